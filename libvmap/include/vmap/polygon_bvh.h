@@ -49,7 +49,7 @@ struct HalfSpace {
 struct PolygonBvhConfig {
     /// Each polygon grows outwards by this much in its plane, world units, so that neighbours leave no cracks. Empty:
     /// the rounding of the coordinates for every polygon; else one value per polygon.
-    std::span<const float> dilation = {};
+    std::span<const float> dilation;
 };
 
 class PolygonBvh {
