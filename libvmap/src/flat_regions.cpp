@@ -180,7 +180,7 @@ std::vector<Plane> merge(const PointCloud& cloud, std::vector<Seed> seeds, doubl
 
 }  // namespace
 
-FlatRegions find_flat_regions(const PointCloud& cloud, std::vector<std::uint32_t> points, double spacing) {
+FlatRegions find_flat_regions(const PointCloud& cloud, std::span<std::uint32_t> points, double spacing) {
     FlatRegions result;
     if (points.empty()) return result;
     Imath::Box3f box;

@@ -10,6 +10,7 @@
 #include <vmap/point_cloud.h>
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace vmap {
@@ -26,8 +27,8 @@ struct FlatRegions {
     std::vector<std::uint32_t> rest;  ///< points on no plane
 };
 
-/// - points: indices into the cloud, the ones to look at
+/// - points: indices into the cloud, the ones to look at; reordered
 /// - spacing: mean distance of neighbouring points, world units
-[[nodiscard]] FlatRegions find_flat_regions(const PointCloud& cloud, std::vector<std::uint32_t> points, double spacing);
+[[nodiscard]] FlatRegions find_flat_regions(const PointCloud& cloud, std::span<std::uint32_t> points, double spacing);
 
 }  // namespace vmap

@@ -327,8 +327,8 @@ void snap_edges(std::vector<Piece>& pieces) {
                 const auto margin = static_cast<float>(1.5 * own);
                 const auto low = static_cast<float>(std::min(ends[0][axis], ends[1][axis])) - margin;
                 const auto high = static_cast<float>(std::max(ends[0][axis], ends[1][axis])) + margin;
-                around[static_cast<std::size_t>(2 * axis)] = {unit, high};
-                around[static_cast<std::size_t>(2 * axis + 1)] = {-unit, -low};
+                around.at(2 * static_cast<std::size_t>(axis)) = {unit, high};
+                around.at(2 * static_cast<std::size_t>(axis) + 1) = {-unit, -low};
             }
             bvh.polygons_in(around, near);
             double best = 1.2 * own;
@@ -370,7 +370,7 @@ void add_pieces(const PointCloud& cloud, Indices points, bool emits, const Patch
     if (points.empty()) return;
     const std::size_t first = pieces.size();
     const double spacing = std::sqrt(area_of(cloud, points) / static_cast<double>(points.size()));
-    FlatRegions flat = find_flat_regions(cloud, std::move(points), spacing);
+    FlatRegions flat = find_flat_regions(cloud, points, spacing);
 
     std::vector<std::vector<Piece>> cut(flat.regions.size());
     std::vector<Indices> rest(flat.regions.size());
