@@ -40,6 +40,7 @@ struct TreeLeaf {
     Imath::V3f centroid{0, 0, 0};  ///< mean of its points, relative to the cloud's origin
     Imath::V3f normal{0, 0, 1};    ///< averaged normal of its points, unit
     float radius = 0;              ///< R of the seed: from the distribution of its points, world units
+    float thickness = 0;           ///< largest distance of its points from its tangent plane, world units
     float area = 0;                ///< sum of its points' areas
     std::uint32_t node = 0;        ///< index into Tree::nodes
 
@@ -47,10 +48,12 @@ struct TreeLeaf {
 };
 
 /// Nodes in an order in which every child comes after its parent; nodes[0] is the root. Empty for an empty cloud.
+/// Leaves are in the order of their points, so that every node's leaves are one range as well.
 struct Tree {
     std::vector<TreeNode> nodes;
     std::vector<TreeLeaf> leaves;
     std::vector<std::uint32_t> point_order;  ///< indices into the cloud; every node's points are one range of it
+    std::vector<Imath::V3i> cells;           ///< uniform octree only: each leaf's cell of the grid; else empty
 
     [[nodiscard]] std::span<const std::uint32_t> points_of(const TreeNode& node) const {
         return std::span(point_order).subspan(node.first_point, node.point_count);
