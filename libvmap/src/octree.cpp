@@ -164,29 +164,32 @@ Tree build_octree(const PointCloud& cloud, const OctreeConfig& config) {
 }
 
 OctreeConfig octree_config_for_leaves(const PointCloud& cloud, OctreeKind kind, std::size_t leaves) {
-    OctreeConfig config{.kind = kind, .cell_size = 0, .points_per_leaf = 0};
+    OctreeConfig best{.kind = kind, .cell_size = 1, .points_per_leaf = 0};
     const double extent = cloud_extent(cloud);
-    if (!(extent > 0)) {
-        config.cell_size = 1;
-        return config;
-    }
+    if (!(extent > 0)) return best;
 
-    // Leaves fall with the cell size, up to the luck of where the cells' borders lie: bisect and keep the best seen.
-    double low = std::log(extent / 900);
-    double high = std::log(extent * 1.1);
     std::size_t best_miss = no_index;
-    for (int step = 0; step < 18 && best_miss > 0; ++step) {
-        OctreeConfig trial = config;
-        trial.cell_size = std::exp((low + high) / 2);
+    const auto try_size = [&](double log_size) {
+        OctreeConfig trial = best;
+        trial.cell_size = std::max(std::exp(log_size), extent / 1000);
         const std::size_t count = build_octree(cloud, trial).leaves.size();
         const std::size_t miss = count > leaves ? count - leaves : leaves - count;
         if (miss < best_miss) {
             best_miss = miss;
-            config.cell_size = trial.cell_size;
+            best = trial;
         }
-        (count > leaves ? low : high) = (low + high) / 2;
+        return count;
+    };
+
+    // Leaves fall with the cell size, up to the luck of where the borders of the cells lie: bisect, then look around.
+    double low = std::log(extent / 900);
+    double high = std::log(extent * 1.1);
+    for (int step = 0; step < 12 && best_miss > 0; ++step) {
+        const double middle = (low + high) / 2;
+        (try_size(middle) > leaves ? low : high) = middle;
     }
-    return config;
+    for (int step = -8; step <= 8 && best_miss > leaves / 200; ++step) try_size((low + high) / 2 + 0.02 * step);
+    return best;
 }
 
 }  // namespace vmap

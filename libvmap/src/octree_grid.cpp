@@ -23,7 +23,9 @@ using Imath::V3i;
 constexpr double grid_shift = 0.00037;
 constexpr double grid_slack = 0.0017;
 
-bool is_finite(const V3f& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
+bool is_finite(const V3f& v) {
+    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
 
 /// Box of the positions; throws at the first point (by index) that is not finite.
 Imath::Box3f checked_bounds(const PointCloud& cloud) {
@@ -133,6 +135,8 @@ OctreeGrid make_octree_grid(const PointCloud& cloud, const OctreeConfig& config)
     return grid;
 }
 
-double cloud_extent(const PointCloud& cloud) { return longest_edge(checked_bounds(cloud)); }
+double cloud_extent(const PointCloud& cloud) {
+    return longest_edge(checked_bounds(cloud));
+}
 
 }  // namespace vmap

@@ -16,7 +16,8 @@ struct OctreeGrid {
     Imath::V3d corner{0, 0, 0};  ///< lowest corner, relative to the cloud's origin
     double cells_per_unit = 0;
     int levels = 0;
-    float rounding = 0;  ///< heights of flat points over their plane may differ by so much through rounding, world units
+    float rounding =
+        0;  ///< heights of flat points over their plane may differ by so much through rounding, world units
 
     [[nodiscard]] Imath::V3i cell(const Imath::V3f& position) const;
 

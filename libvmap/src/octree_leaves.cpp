@@ -26,7 +26,8 @@ void split_into_sheets(const PointCloud& cloud, float rounding, Tree& tree) {
     std::vector<std::vector<std::uint32_t>> sheets(cells.size());
     tbb::parallel_for(std::size_t{0}, cells.size(), [&](std::size_t c) {
         const TreeNode& node = tree.nodes[cells[c]];
-        sheets[c] = part_sheets(cloud, std::span(tree.point_order).subspan(node.first_point, node.point_count), rounding);
+        sheets[c] =
+            part_sheets(cloud, std::span(tree.point_order).subspan(node.first_point, node.point_count), rounding);
     });
 
     for (std::size_t c = 0; c < cells.size(); ++c) {

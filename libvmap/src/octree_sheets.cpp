@@ -24,7 +24,9 @@ struct CellShape {
     float height_range = 0;  ///< of all points
 };
 
-float height(const V3f& normal, const V3f& from, const V3f& position) { return normal.dot(position - from); }
+float height(const V3f& normal, const V3f& from, const V3f& position) {
+    return normal.dot(position - from);
+}
 
 CellShape measure(const PointCloud& cloud, std::span<const std::uint32_t> points) {
     V3d sum(0);

@@ -2,9 +2,9 @@
 /// \file
 /// Octrees over the points of a cloud, adaptive and uniform, the two trees of the seed.
 ///
-/// Points are first parted by the dominant axis of their normal, six classes that share one grid of cells, then by cell,
-/// and a cell whose points lie on several parallel sheets is parted by sheet. A leaf is therefore the part of one surface
-/// in one cell, and its averaged normal means something even in corners, thin walls and under lamps.
+/// Points are first parted by the dominant axis of their normal, six classes that share one grid of cells, then by
+/// cell, and a cell whose points lie on several parallel sheets is parted by sheet. A leaf is therefore the part of one
+/// surface in one cell, and its averaged normal means something even in corners, thin walls and under lamps.
 ///
 /// This work is based on:
 ///   R. Goradia, A. Kanakanti, S. Chandran, A. Datta, "Visibility map for global illumination in point clouds",
@@ -44,7 +44,7 @@ inline constexpr int max_uniform_levels = 10;
 ///   of 0 or below 1/1024 of the cloud's extent, for a negative cell size, and for an adaptive one with neither limit
 [[nodiscard]] Tree build_octree(const PointCloud& cloud, const OctreeConfig& config = {});
 
-/// The cell size with which an octree of this kind comes closest to a wanted number of leaves. Costs about fifteen
+/// The cell size with which an octree of this kind comes closest to a wanted number of leaves. Costs about thirty
 /// octrees.
 ///
 /// - leaves: at least 1; a cloud may be unable to give so many or so few, then the nearest that it can give

@@ -22,7 +22,7 @@ inline constexpr std::uint32_t no_index = std::numeric_limits<std::uint32_t>::ma
 struct TreeNode {
     Imath::Box3f bounds;             ///< of its points, relative to the cloud's origin
     Imath::V3f cone_axis{0, 0, 1};   ///< unit; axis of a cone that holds every normal of the node
-    float cone_cos = -1;             ///< cosine of the cone's half angle; -1 when the normals go everywhere
+    float cone_cos = -1;             ///< cosine of the cone's half angle, to 1e-5; -1 when the normals go everywhere
     std::uint32_t first_child = 0;   ///< children are contiguous in Tree::nodes
     std::uint32_t child_count = 0;   ///< 0 for a leaf
     std::uint32_t first_point = 0;   ///< points are contiguous in Tree::point_order
