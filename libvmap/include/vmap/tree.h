@@ -22,7 +22,7 @@ inline constexpr std::uint32_t no_index = std::numeric_limits<std::uint32_t>::ma
 struct TreeNode {
     Imath::Box3f bounds;             ///< of its points, relative to the cloud's origin
     Imath::V3f cone_axis{0, 0, 1};   ///< unit; axis of a cone that holds every normal of the node
-    float cone_cos = -1;             ///< cosine of the cone's half angle; -1 when the normals go everywhere
+    float cone_cos = -1;             ///< cosine of the cone's half angle, to 1e-5; -1 when the normals go everywhere
     std::uint32_t first_child = 0;   ///< children are contiguous in Tree::nodes
     std::uint32_t child_count = 0;   ///< 0 for a leaf
     std::uint32_t first_point = 0;   ///< points are contiguous in Tree::point_order
@@ -40,6 +40,7 @@ struct TreeLeaf {
     Imath::V3f centroid{0, 0, 0};  ///< mean of its points, relative to the cloud's origin
     Imath::V3f normal{0, 0, 1};    ///< averaged normal of its points, unit
     float radius = 0;              ///< R of the seed: from the distribution of its points, world units
+    float thickness = 0;           ///< largest distance of its points from its tangent plane, world units
     float area = 0;                ///< sum of its points' areas
     std::uint32_t node = 0;        ///< index into Tree::nodes
 
@@ -47,10 +48,12 @@ struct TreeLeaf {
 };
 
 /// Nodes in an order in which every child comes after its parent; nodes[0] is the root. Empty for an empty cloud.
+/// Leaves are in the order of their points, so that every node's leaves are one range as well.
 struct Tree {
     std::vector<TreeNode> nodes;
     std::vector<TreeLeaf> leaves;
     std::vector<std::uint32_t> point_order;  ///< indices into the cloud; every node's points are one range of it
+    std::vector<Imath::V3i> cells;           ///< uniform octree only: each leaf's cell of the grid; else empty
 
     [[nodiscard]] std::span<const std::uint32_t> points_of(const TreeNode& node) const {
         return std::span(point_order).subspan(node.first_point, node.point_count);
