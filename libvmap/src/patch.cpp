@@ -358,7 +358,8 @@ void snap_edges(std::vector<Piece>& pieces) {
         std::vector<V2d> outline = outline_of(edges);
         const bool sound =
             outline.size() >= 3 && std::abs(polygon_area(outline) / polygon_area(piece.outline) - 1) < 0.1;
-        snapped[p] = sound ? std::move(outline) : piece.outline;
+        if (!sound) outline = piece.outline;
+        snapped[p] = std::move(outline);
     });
     for (std::size_t p = 0; p < pieces.size(); ++p)
         if (!snapped[p].empty()) pieces[p].outline = std::move(snapped[p]);

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "direct_light.h"
+#include "indirect_light.h"
+#include "surface.h"
+
+#include <vmap/error.h>
+#include <vmap/light.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+namespace vmap {
+namespace {
+
+using Imath::C3f;
+
+/// With more pairs of a tile and an emitter than this the rays of the indirect light see the emitters.
+constexpr std::size_t most_emitter_pairs = 4'000'000;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+void check(const PointCloud& cloud, std::span<const LightSource> lights, const LightConfig& config) {
+    if (!(config.tolerance > 0 && config.tolerance <= 1))
+        throw UsageError("tolerance " + std::to_string(config.tolerance) + ": expected a value in (0, 1]");
+    const auto positive = [](const C3f& c) { return c.x > 0 || c.y > 0 || c.z > 0; };
+    const bool glows = std::any_of(cloud.emission.begin(), cloud.emission.end(), positive);
+    const bool lit =
+        std::any_of(lights.begin(), lights.end(), [&](const LightSource& light) { return positive(light.intensity); });
+    if (!glows && !lit) throw UnsupportedInput("nothing emits light: expected a light source or an emissive surface");
+}
+
+}  // namespace
+
+LightResult compute_light(const PointCloud& cloud, std::span<const LightSource> lights, const LightConfig& config,
+                          const ProgressCallback& progress) {
+    check(cloud, lights, config);
+    LightResult result;
+    if (cloud.empty()) return result;
+
+    auto start = std::chrono::steady_clock::now();
+    report_progress(progress, "tree", 0);
+    const Surface surface(cloud);
+    result.report.patches = surface.set.patches.size();
+    result.report.leaves = surface.tiles.size();
+    result.report.nodes = surface.bvh.nodes().size();
+    result.report.tree_seconds = seconds_since(start);
+
+    start = std::chrono::steady_clock::now();
+    std::vector<Emitter> emitters = find_emitters(surface);
+    const bool gather_emission = emitters.size() > 6 && emitters.size() * surface.tiles.size() > most_emitter_pairs;
+    if (gather_emission) emitters.clear();
+    result.irradiance = direct_light(surface, emitters, lights, config.seed, progress);
+    result.report.direct_seconds = seconds_since(start);
+
+    start = std::chrono::steady_clock::now();
+    const IndirectResult indirect =
+        indirect_light(surface, result.irradiance, {config.tolerance, config.seed, gather_emission}, progress);
+    double sum = 0;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+        result.irradiance[i] += indirect.irradiance[i];
+        const C3f& e = result.irradiance[i];
+        sum += static_cast<double>(e.x + e.y + e.z) / 3;
+    }
+    const double mean = sum / static_cast<double>(cloud.size());
+    result.report.receivers = indirect.receivers;
+    result.report.rays = indirect.rays;
+    result.report.indirect_seconds = seconds_since(start);
+    result.report.error_mean = mean > 0 ? indirect.noise_mean / mean : 0;
+    result.report.error_p95 = mean > 0 ? indirect.noise_p95 / mean : 0;
+    result.report.converged = indirect.converged;
+    if (!indirect.converged) {
+        const bool mirror = std::any_of(cloud.albedo.begin(), cloud.albedo.end(),
+                                        [](const C3f& a) { return std::max({a.x, a.y, a.z}) >= 1; });
+        if (mirror)
+            throw UnsupportedInput("the light does not settle: albedo 1 in a closed scene; expected albedo below 1");
+        result.report.warnings.emplace_back("the light between the patches did not settle");
+    }
+    return result;
+}
+
+}  // namespace vmap
