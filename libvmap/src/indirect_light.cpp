@@ -37,7 +37,14 @@ struct TexelRaster {
     [[nodiscard]] std::uint32_t at(const V2f& place) const {
         const int x = std::clamp(static_cast<int>((place.x - low.x) / size), 0, width - 1);
         const int y = std::clamp(static_cast<int>((place.y - low.y) / size), 0, height - 1);
-        return first + static_cast<std::uint32_t>(y * width + x);
+        return index(x, y);
+    }
+    [[nodiscard]] std::uint32_t index(int x, int y) const {
+        return first + static_cast<std::uint32_t>(y) * static_cast<std::uint32_t>(width) +
+               static_cast<std::uint32_t>(x);
+    }
+    [[nodiscard]] std::uint32_t count() const {
+        return static_cast<std::uint32_t>(width) * static_cast<std::uint32_t>(height);
     }
     [[nodiscard]] V2f middle(int x, int y) const {
         return low + V2f((static_cast<float>(x) + 0.5F) * size, (static_cast<float>(y) + 0.5F) * size);
@@ -115,7 +122,7 @@ private:
                 raster.width = std::max(1, static_cast<int>(std::ceil(box.size().x / raster.size)));
                 raster.height = std::max(1, static_cast<int>(std::ceil(box.size().y / raster.size)));
             }
-            count += static_cast<std::uint32_t>(raster.width * raster.height);
+            count += raster.count();
         }
         texels_.resize(count);
         tbb::parallel_for(std::size_t{0}, rasters_.size(), [&](std::size_t p) { fill_raster(p); });
@@ -126,7 +133,7 @@ private:
     void fill_raster(std::size_t p) {
         const Patch& patch = surface_.set.patches[p];
         const TexelRaster& raster = rasters_[p];
-        std::vector<float> weight(static_cast<std::size_t>(raster.width * raster.height), 0.0F);
+        std::vector<float> weight(raster.count(), 0.0F);
         for (const std::uint32_t i : surface_.set.points_of(patch)) {
             const std::uint32_t t = patch.flat ? raster.at(patch.to_plane(surface_.cloud.positions[i])) : raster.first;
             const C3f& albedo = surface_.cloud.albedo[i];
@@ -147,7 +154,7 @@ private:
     }
 
     void spread_into_gaps(const TexelRaster& raster, std::vector<float>& weight) {
-        const auto index = [&](int x, int y) { return static_cast<std::size_t>(y * raster.width + x); };
+        const auto index = [&](int x, int y) { return std::size_t{raster.index(x, y) - raster.first}; };
         for (int round = 0; round < raster.width + raster.height; ++round) {
             std::vector<std::size_t> filled;
             bool gaps = false;
@@ -180,7 +187,7 @@ private:
             const TexelRaster& raster = rasters_[p];
             for (int y = 0; y < raster.height; ++y)
                 for (int x = 0; x < raster.width; ++x) {
-                    Texel& texel = texels_[raster.first + static_cast<std::size_t>(y * raster.width + x)];
+                    Texel& texel = texels_[raster.index(x, y)];
                     texel.indirect = patch.flat ? weights_on_flat(p, raster.middle(x, y), careful)
                                                 : Weights{{center_of_[p], 0, 0, 0}, {1, 0, 0, 0}};
                 }

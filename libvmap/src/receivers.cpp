@@ -125,7 +125,8 @@ std::pair<Weights, const ReceiverGrid::Cell*> ReceiverGrid::weights_at(const V2f
     const V2f at(steps(0), steps(1));
     const int x = std::min(static_cast<int>(at.x) / finest_steps, count_.x - 1);
     const int y = std::min(static_cast<int>(at.y) / finest_steps, count_.y - 1);
-    const Cell* cell = &cells_[static_cast<std::size_t>(y * count_.x + x)];
+    const Cell* cell =
+        &cells_[static_cast<std::size_t>(y) * static_cast<std::size_t>(count_.x) + static_cast<std::size_t>(x)];
     while (cell->first_child != 0) {
         const int half = finest_steps >> (cell->level + 1);
         const int right = at.x >= static_cast<float>(cell->at.x + half) ? 1 : 0;

@@ -165,7 +165,8 @@ TEST(Octree, RadiusOfOneLeafClosedForm) {
     // 4 x 4 points on a square of edge 1: centres 1/8 from the border, spacing 1/4.
     PointCloud cloud;
     for (int i = 0; i < 16; ++i) {
-        cloud.positions.emplace_back((static_cast<float>(i % 4) + 0.5F) / 4, 0, (static_cast<float>(i / 4) + 0.5F) / 4);
+        const int row = i / 4;
+        cloud.positions.emplace_back((static_cast<float>(i % 4) + 0.5F) / 4, 0, (static_cast<float>(row) + 0.5F) / 4);
         cloud.normals.emplace_back(0, 1, 0);
         cloud.areas.push_back(1.0F / 16);
     }

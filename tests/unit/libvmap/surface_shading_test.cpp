@@ -96,8 +96,7 @@ TEST(SurfaceShading, WidthIsMeasuredInTheWorld) {
 TEST(SurfaceShading, MaskCutsBelowTheCutoffOnly) {
     Scene scene = triangle_scene();
     scene.images = {two_texels({255, 255, 255, 127}, {255, 255, 255, 129})};
-    scene.materials[0].base_color_texture = TextureView{};
-    scene.materials[0].base_color_texture->nearest = true;
+    scene.materials[0].base_color_texture = TextureView{.nearest = true};
     const SurfacePlace left{.barycentric = V3d(0.8, 0.1, 0.1)};
     const SurfacePlace right{.barycentric = V3d(0.1, 0.8, 0.1)};
     scene.materials[0].alpha_mode = AlphaMode::mask;
@@ -111,8 +110,7 @@ TEST(SurfaceShading, MissingTexcoordsReadTheOrigin) {
     Scene scene = triangle_scene();
     scene.meshes[0].texcoords.clear();
     scene.images = {two_texels({255, 255, 255, 255}, {0, 0, 0, 255})};
-    scene.materials[0].base_color_texture = TextureView{};
-    scene.materials[0].base_color_texture->nearest = true;
+    scene.materials[0].base_color_texture = TextureView{.nearest = true};
     EXPECT_NEAR(SurfaceShading(scene).albedo({}).x, 1.0, 1e-6);
 }
 

@@ -125,6 +125,7 @@ TEST(TexturePyramid, LongFootprintDoesNotBlurAcross) {
 
 TEST(TexturePyramid, CutAwayTexelsDoNotDarkenTheRest) {
     std::vector<Pixel> pixels;
+    pixels.reserve(16 * 16);
     for (int i = 0; i < 16 * 16; ++i) pixels.push_back(i % 2 == 0 ? Pixel{255, 255, 255, 255} : Pixel{0, 0, 0, 0});
     const Image image = image_of(16, 16, pixels);
     EXPECT_NEAR(TexturePyramid(image, TexelMeaning::cutout).average({}, square({0.5, 0.5}, 1)).r, 1.0, 1e-3);
