@@ -16,15 +16,6 @@ using Imath::V2i;
 
 constexpr int max_looks = 8;
 
-std::array<float, 256> make_srgb_table() {
-    std::array<float, 256> table{};
-    for (int i = 0; i < 256; ++i) {
-        const double coded = i / 255.0;
-        table[i] = static_cast<float>(coded <= 0.04045 ? coded / 12.92 : std::pow((coded + 0.055) / 1.055, 2.4));
-    }
-    return table;
-}
-
 std::uint16_t encode(double linear) {
     return static_cast<std::uint16_t>(std::lround(std::sqrt(std::clamp(linear, 0.0, 1.0)) * 65535));
 }
@@ -110,11 +101,6 @@ Ellipse ellipse_of(const V2d& a, const V2d& b) {
 }
 
 }  // namespace
-
-float linear_from_srgb8(std::uint8_t component) {
-    static const std::array<float, 256> table = make_srgb_table();
-    return table[component];
-}
 
 TexturePyramid::TexturePyramid(const Image& image, TexelMeaning meaning) : image_(&image), meaning_(meaning) {
     assert(image.width > 0 && image.height > 0);

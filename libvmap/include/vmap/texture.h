@@ -10,6 +10,7 @@
 #pragma once
 
 #include <vmap/scene.h>
+#include <vmap/srgb.h>
 
 #include <Imath/ImathColor.h>
 #include <Imath/ImathVec.h>
@@ -19,9 +20,6 @@
 #include <vector>
 
 namespace vmap {
-
-/// Linear value in [0, 1] of an 8-bit sRGB component (IEC 61966-2-1).
-[[nodiscard]] float linear_from_srgb8(std::uint8_t component);
 
 /// What the bytes of an image mean.
 enum class TexelMeaning {
