@@ -21,8 +21,8 @@ constexpr std::uint32_t first_bucket = std::bit_cast<std::uint32_t>(darkest) >> 
 constexpr std::uint32_t bucket_count = (std::bit_cast<std::uint32_t>(1.0F) >> bucket_shift) - first_bucket;
 
 struct Tables {
-    std::array<float, 256> linear{};        ///< light of each sample
-    std::array<float, 256> upper_bound{};   ///< least light that rounds to the next sample; the last is never reached
+    std::array<float, 256> linear{};       ///< light of each sample
+    std::array<float, 256> upper_bound{};  ///< least light that rounds to the next sample; the last is never reached
     std::array<std::uint8_t, bucket_count> start{};  ///< sample of the least light in a bucket
 
     Tables() {
@@ -46,7 +46,9 @@ const Tables& tables() {
 
 }  // namespace
 
-float linear_from_srgb8(std::uint8_t sample) { return tables().linear[sample]; }
+float linear_from_srgb8(std::uint8_t sample) {
+    return tables().linear[sample];
+}
 
 std::uint8_t srgb8_from_linear(float linear) {
     if (!(linear >= darkest)) return 0;
