@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The bytes behind a document's buffers and views.
+#pragma once
+
+#include "../file_bytes.h"
+#include "../scene_folder.h"
+#include "document.h"
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace vmap::gltf {
+
+class Buffers {
+public:
+    /// Loads every buffer: from the GLB's binary chunk, a data URI or a file in the scene's folder.
+    ///
+    /// - bin: the binary chunk; has to outlive this object
+    /// - throws BrokenContent when a buffer is not there or shorter than the document says
+    Buffers(const Document& document, const SceneFolder& folder, std::optional<std::span<const std::byte>> bin);
+
+    /// Bytes of a view; a compressed one is decompressed at the first call.
+    [[nodiscard]] std::span<const std::byte> view(std::size_t index);
+
+    /// Bytes of all buffers as stored, a measure of what a sound document can hold.
+    [[nodiscard]] std::uint64_t stored_size() const;
+
+private:
+    [[nodiscard]] std::span<const std::byte> range(std::size_t buffer, std::uint64_t offset,
+                                                   std::uint64_t length) const;
+
+    const Document& document_;
+    std::vector<Bytes> owned_;
+    std::vector<std::span<const std::byte>> buffers_;     // empty for placeholders
+    std::vector<std::optional<Bytes>> decompressed_;      // one per view
+};
+
+}  // namespace vmap::gltf
