@@ -58,7 +58,10 @@ def room_faces(low, high):
 
 
 def prism(base, height, bottom=False):
-    """A block over a polygon of (x, z) corners on y = 0, clockwise seen from above (x right, z towards the viewer)."""
+    """A block over a convex polygon of (x, z) corners on y = 0, given in either direction."""
+    ends = list(base[1:]) + [base[0]]
+    if sum(x0 * z1 - x1 * z0 for (x0, z0), (x1, z1) in zip(base, ends)) < 0:
+        base = base[::-1]
     low = [(x, 0, z) for x, z in base]
     high = [(x, height, z) for x, z in base]
     count = len(base)
