@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// The methods behind build_vmap, one per source file.
+#pragma once
+
+#include <vmap/progress.h>
+#include <vmap/tree.h>
+#include <vmap/visibility_map.h>
+
+namespace vmap {
+
+[[nodiscard]] VisibilityMap build_exhaustive(const Tree& tree, const ProgressCallback& progress);
+[[nodiscard]] VisibilityMap build_as_seed(const Tree& tree, const ProgressCallback& progress);
+
+}  // namespace vmap
