@@ -1,57 +1,30 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "output_folder.h"
+
 #include <vmap/error.h>
 #include <vmap/exporters/ply.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstring>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
 
 namespace vmap {
 namespace {
 
-namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-/// A fresh folder that goes away with the test.
-class PlyFile : public testing::Test {
+class PlyFile : public OutputFolder {
 protected:
-    PlyFile() : folder(fs::path(testing::TempDir()) / ("vmap_ply_" + std::to_string(::getpid()))) {
-        fs::create_directories(folder);
-    }
-    ~PlyFile() override { fs::remove_all(folder); }
-
-    [[nodiscard]] std::string path() const { return (folder / "lit.ply").string(); }
-    [[nodiscard]] std::string content() const {
-        std::ifstream file(path(), std::ios::binary);
-        return {std::istreambuf_iterator<char>(file), {}};
-    }
-    [[nodiscard]] std::size_t file_count() const {
-        return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
-    }
+    [[nodiscard]] std::string path() const { return OutputFolder::path("lit.ply"); }
+    [[nodiscard]] std::string content() const { return OutputFolder::content("lit.ply"); }
     void write(const LitCloud& cloud, const OutputInfo& info = {}) const {
         FileWriter file(path());
         write_ply(file, cloud, info);
         file.commit();
     }
-
-    fs::path folder;
 };
-
-LitCloud two_points() {
-    LitCloud cloud;
-    cloud.points.positions = {{1, 2, 3}, {4, 5, 6}};
-    cloud.points.normals = {{0, 1, 0}, {1, 0, 0}};
-    cloud.points.areas = {0.5F, 0.25F};
-    cloud.points.albedo = {{0.1F, 0.2F, 0.3F}, {0.4F, 0.5F, 0.6F}};
-    cloud.irradiance = {{1e4F, 2, 3}, {4, 5, 6}};
-    return cloud;
-}
 
 TEST_F(PlyFile, HeaderNamesEveryPropertyOfTheContract) {
     write(two_points(), {.up = UpAxis::z, .source = "room.glb"});
