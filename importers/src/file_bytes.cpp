@@ -34,7 +34,7 @@ public:
     OpenFile& operator=(const OpenFile&) = delete;
 
     [[nodiscard]] std::uint64_t size() const {
-        struct stat status {};
+        struct stat status{};
         if (::fstat(fd_, &status) != 0) fail("cannot examine", errno);
         if (S_ISDIR(status.st_mode)) throw BrokenContent("is a folder, expected a file");
         if (!S_ISREG(status.st_mode)) throw BrokenContent("is not a regular file");

@@ -21,9 +21,8 @@ int hex_digit(char c) {
 bool has_scheme(std::string_view uri) {
     const std::size_t colon = uri.find_first_of(":/?#");
     if (colon == std::string_view::npos || uri[colon] != ':' || colon == 0) return false;
-    return std::all_of(uri.begin(), uri.begin() + static_cast<std::ptrdiff_t>(colon), [](unsigned char c) {
-        return std::isalnum(c) != 0 || c == '+' || c == '-' || c == '.';
-    });
+    return std::all_of(uri.begin(), uri.begin() + static_cast<std::ptrdiff_t>(colon),
+                       [](unsigned char c) { return std::isalnum(c) != 0 || c == '+' || c == '-' || c == '.'; });
 }
 
 constexpr std::uint8_t not_base64 = 0xFF;

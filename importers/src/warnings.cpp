@@ -10,10 +10,12 @@
 namespace vmap {
 
 void Warnings::add(const std::string& feature, const std::string& example) {
-    const auto known = std::find_if(entries_.begin(), entries_.end(),
-                                    [&](const Entry& entry) { return entry.feature == feature; });
-    if (known != entries_.end()) ++known->count;
-    else entries_.push_back({feature, example, 1});
+    const auto known =
+        std::find_if(entries_.begin(), entries_.end(), [&](const Entry& entry) { return entry.feature == feature; });
+    if (known != entries_.end())
+        ++known->count;
+    else
+        entries_.push_back({feature, example, 1});
 }
 
 std::vector<std::string> Warnings::lines() const {

@@ -8,14 +8,12 @@
 #include <algorithm>
 #include <cassert>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <type_traits>
 
 namespace vmap::gltf {
 namespace {
-
-// Zeros cost no bytes in the file, so their number says nothing about its size.
-constexpr std::uint64_t most_unstored_elements = 1ULL << 22U;
 
 template <class T>
 T load(const std::byte* bytes) {
@@ -54,25 +52,51 @@ void with_type(ComponentType type, const Function& function) {
     }
 }
 
-std::uint32_t packed_size(const Elements& elements) { return elements.components * byte_size(elements.component); }
+template <class T>
+void read_element(const std::byte* element, std::uint32_t components, bool normalized, float* out) {
+    for (std::uint32_t c = 0; c < components; ++c) out[c] = to_float(load<T>(element + c * sizeof(T)), normalized);
+}
 
-std::vector<std::uint32_t> read_sparse_indices(const SparseInfo& sparse, std::uint64_t count, Buffers& buffers) {
+/// Calls a function with the place of each selected element in the output and its number.
+template <class Function>
+void for_each_selected(const Selection& selection, std::uint64_t count, const Function& function) {
+    if (selection.all)
+        for (std::size_t i = 0; i < count; ++i) function(i, i);
+    else
+        for (std::size_t i = 0; i < selection.chosen.size(); ++i) function(i, selection.chosen[i]);
+}
+
+/// Calls a function with the place in the output of each replaced element that is selected and its replacement.
+template <class Function>
+void for_each_replaced(const Elements& elements, const Selection& selection, const Function& function) {
+    const std::size_t size = elements.components * byte_size(elements.component);
+    auto next = selection.chosen.begin();
+    for (std::size_t i = 0; i < elements.replaced.size(); ++i) {
+        std::size_t place = elements.replaced[i];
+        if (!selection.all) {
+            next = std::lower_bound(next, selection.chosen.end(), elements.replaced[i]);
+            if (next == selection.chosen.end()) return;
+            if (*next != elements.replaced[i]) continue;
+            place = static_cast<std::size_t>(next - selection.chosen.begin());
+        }
+        function(place, elements.replacements + i * size);
+    }
+}
+
+void open_sparse(const SparseInfo& sparse, Buffers& buffers, Elements& elements) {
     Elements indices;
     indices.data = buffers.view(sparse.index_view).data() + sparse.index_offset;
     indices.count = sparse.count;
     indices.component = sparse.index_type;
     indices.stride = byte_size(sparse.index_type);
-    std::vector<std::uint32_t> replaced = read_integers(indices);
+    elements.replaced = read_integers(indices, buffers);
+    elements.replacements = buffers.view(sparse.value_view).data() + sparse.value_offset;
+    const std::vector<std::uint32_t>& replaced = elements.replaced;
     if (std::adjacent_find(replaced.begin(), replaced.end(), std::greater_equal<>()) != replaced.end())
         throw BrokenContent("a sparse accessor's indices do not increase");
-    if (replaced.back() >= count)
-        throw BrokenContent(fmt::format("a sparse accessor replaces element {} of {}", replaced.back(), count));
-    return replaced;
-}
-
-template <class T>
-void write_element(const std::byte* element, std::uint32_t components, bool normalized, float* out) {
-    for (std::uint32_t c = 0; c < components; ++c) out[c] = to_float(load<T>(element + c * sizeof(T)), normalized);
+    if (replaced.back() >= elements.count)
+        throw BrokenContent(
+            fmt::format("a sparse accessor replaces element {} of {}", replaced.back(), elements.count));
 }
 
 }  // namespace
@@ -84,9 +108,49 @@ Elements open_accessor(const Accessor& accessor, Buffers& buffers) {
     elements.component = accessor.component;
     elements.normalized = accessor.normalized;
     if (accessor.view) {
-        const std::uint32_t stride = buffers_stride(accessor);
+        elements.data = buffers.view(*accessor.view).data() + accessor.offset;
+        const std::uint32_t stride = buffers.stride(*accessor.view);
+        elements.stride = stride > 0 ? stride : accessor.element_size;
     }
+    if (accessor.sparse) open_sparse(*accessor.sparse, buffers, elements);
     return elements;
+}
+
+void read_floats(const Elements& elements, const Selection& selection, std::uint32_t components, std::span<float> out) {
+    assert(out.size() == components * selection.size(elements.count));
+    const std::uint32_t stored = std::min(components, elements.components);
+    with_type(elements.component, [&](auto type) {
+        using T = decltype(type);
+        for_each_selected(selection, elements.count, [&](std::size_t place, std::size_t element) {
+            float* const to = out.data() + place * components;
+            if (elements.data == nullptr)
+                std::fill_n(to, stored, 0.0F);
+            else
+                read_element<T>(elements.data + element * elements.stride, stored, elements.normalized, to);
+        });
+        for_each_replaced(elements, selection, [&](std::size_t place, const std::byte* replacement) {
+            read_element<T>(replacement, stored, elements.normalized, out.data() + place * components);
+        });
+    });
+}
+
+std::vector<std::uint32_t> read_integers(const Elements& elements, Buffers& buffers) {
+    buffers.spend(elements.count, sizeof(std::uint32_t));
+    std::vector<std::uint32_t> values(elements.count);
+    with_type(elements.component, [&](auto type) {
+        using T = decltype(type);
+        if constexpr (std::is_unsigned_v<T>) {
+            if (elements.data != nullptr)
+                for (std::size_t i = 0; i < values.size(); ++i)
+                    values[i] = load<T>(elements.data + i * elements.stride);
+            for_each_replaced(elements, {}, [&](std::size_t place, const std::byte* replacement) {
+                values[place] = load<T>(replacement);
+            });
+        } else {
+            assert(!"callers check the type");
+        }
+    });
+    return values;
 }
 
 }  // namespace vmap::gltf

@@ -27,10 +27,9 @@ struct Elements {
     const std::byte* replacements = nullptr;
 };
 
-/// Finds the bytes of an accessor.
+/// Finds the bytes of an accessor. Takes no memory for elements that are not stored.
 ///
-/// - throws BrokenContent when its sparse indices are not increasing or not below its count, UnsupportedContent for
-///   billions of elements without stored bytes
+/// - throws BrokenContent when its sparse indices are not increasing or not below its count
 [[nodiscard]] Elements open_accessor(const Accessor& accessor, Buffers& buffers);
 
 /// Vertices to read: all, or some in increasing order.
@@ -38,7 +37,7 @@ struct Selection {
     bool all = true;
     std::vector<std::uint32_t> chosen;
 
-    [[nodiscard]] std::size_t size(const Elements& elements) const { return all ? elements.count : chosen.size(); }
+    [[nodiscard]] std::size_t size(std::uint64_t count) const { return all ? count : chosen.size(); }
 };
 
 /// Reads elements as floats, normalised integers mapped to [-1, 1] or [0, 1].
@@ -48,6 +47,8 @@ struct Selection {
 void read_floats(const Elements& elements, const Selection& selection, std::uint32_t components, std::span<float> out);
 
 /// Reads scalars of an unsigned type.
-[[nodiscard]] std::vector<std::uint32_t> read_integers(const Elements& elements);
+///
+/// - buffers: asked for the memory that they take
+[[nodiscard]] std::vector<std::uint32_t> read_integers(const Elements& elements, Buffers& buffers);
 
 }  // namespace vmap::gltf

@@ -3,6 +3,7 @@
 
 #include "../content_error.h"
 #include "../uri.h"
+#include "limits.h"
 #include "meshopt.h"
 
 #include <fmt/format.h>
@@ -43,15 +44,20 @@ Buffers::Buffers(const Document& document, const SceneFolder& folder, std::optio
             bytes = *bin;
         }
         if (!info.placeholder && bytes.size() < info.length)
-            throw BrokenContent(fmt::format("buffers[{}] has {} bytes, but its byteLength is {}", i, bytes.size(),
-                                            info.length));
+            throw BrokenContent(
+                fmt::format("buffers[{}] has {} bytes, but its byteLength is {}", i, bytes.size(), info.length));
         buffers_.push_back(info.placeholder ? bytes : bytes.first(info.length));
     }
+    const std::uint64_t stored =
+        std::accumulate(buffers_.begin(), buffers_.end(), std::uint64_t{0},
+                        [](std::uint64_t sum, const auto& buffer) { return sum + buffer.size(); });
+    budget_ = unstored_bytes + stored * most_bytes_per_stored_byte;
 }
 
 std::span<const std::byte> Buffers::range(std::size_t buffer, std::uint64_t offset, std::uint64_t length) const {
     if (document_.buffers[buffer].placeholder)
-        throw BrokenContent(fmt::format("buffers[{}] has no bytes of its own and is read without decompression", buffer));
+        throw BrokenContent(
+            fmt::format("buffers[{}] has no bytes of its own and is read without decompression", buffer));
     assert(offset + length <= buffers_[buffer].size());  // checked when the document was read
     return buffers_[buffer].subspan(offset, length);
 }
@@ -62,6 +68,7 @@ std::span<const std::byte> Buffers::view(std::size_t index) {
     std::optional<Bytes>& bytes = decompressed_[index];
     if (!bytes) {
         const MeshoptView& packed = *view.meshopt;
+        spend(packed.count, packed.stride);
         try {
             bytes = decompress_meshopt(packed, range(packed.buffer, packed.offset, packed.length));
         } catch (const BrokenContent& error) {
@@ -74,9 +81,14 @@ std::span<const std::byte> Buffers::view(std::size_t index) {
     return bytes->span().first(view.length);
 }
 
-std::uint64_t Buffers::stored_size() const {
-    return std::accumulate(buffers_.begin(), buffers_.end(), std::uint64_t{0},
-                           [](std::uint64_t sum, const auto& buffer) { return sum + buffer.size(); });
+std::uint32_t Buffers::stride(std::size_t view) const {
+    return document_.views[view].stride;
+}
+
+void Buffers::spend(std::uint64_t count, std::uint64_t bytes_each) {
+    if (count > budget_ / bytes_each)
+        throw UnsupportedContent("its meshes would take far more memory than a file of its size may ask for");
+    budget_ -= count * bytes_each;
 }
 
 }  // namespace vmap::gltf

@@ -25,8 +25,14 @@ public:
     /// Bytes of a view; a compressed one is decompressed at the first call.
     [[nodiscard]] std::span<const std::byte> view(std::size_t index);
 
-    /// Bytes of all buffers as stored, a measure of what a sound document can hold.
-    [[nodiscard]] std::uint64_t stored_size() const;
+    /// Bytes between the elements of a view; 0 when they follow each other.
+    [[nodiscard]] std::uint32_t stride(std::size_t view) const;
+
+    /// Asks for memory before it is taken. What a document may take in all depends on its size, so that a short file
+    /// cannot claim much by naming the same bytes again and again.
+    ///
+    /// - throws UnsupportedContent when it asks for too much
+    void spend(std::uint64_t count, std::uint64_t bytes_each);
 
 private:
     [[nodiscard]] std::span<const std::byte> range(std::size_t buffer, std::uint64_t offset,
@@ -34,8 +40,9 @@ private:
 
     const Document& document_;
     std::vector<Bytes> owned_;
-    std::vector<std::span<const std::byte>> buffers_;     // empty for placeholders
-    std::vector<std::optional<Bytes>> decompressed_;      // one per view
+    std::vector<std::span<const std::byte>> buffers_;  // empty for placeholders
+    std::vector<std::optional<Bytes>> decompressed_;   // one per view
+    std::uint64_t budget_ = 0;                         // bytes that may still be taken
 };
 
 }  // namespace vmap::gltf

@@ -36,8 +36,7 @@ Chunk take_chunk(std::span<const std::byte>& rest) {
     const std::size_t available = rest.size() - chunk_header_size;
     if (length > available)
         throw BrokenContent(fmt::format("a GLB chunk claims {} bytes, but the file has {} left", length, available));
-    if (length % 4 != 0)
-        throw BrokenContent(fmt::format("a GLB chunk has {} bytes, expected a multiple of 4", length));
+    if (length % 4 != 0) throw BrokenContent(fmt::format("a GLB chunk has {} bytes, expected a multiple of 4", length));
     const Chunk chunk{word_at(rest, 4), rest.subspan(chunk_header_size, length)};
     rest = rest.subspan(chunk_header_size + length);
     return chunk;

@@ -29,6 +29,11 @@ std::optional<std::size_t> find_attribute(const Attributes& attributes, const st
     return found->second;
 }
 
+bool uses_extension(const Document& document, std::string_view name) {
+    const auto& used = document.extensions_used;
+    return std::find(used.begin(), used.end(), name) != used.end();
+}
+
 Document read_document(const JsonObject& root, LightUnits units, Warnings& warnings) {
     Document document;
     read_asset_and_extensions(root, document, warnings);

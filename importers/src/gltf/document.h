@@ -4,6 +4,7 @@
 /// read it without looking back. Bytes are not loaded yet.
 #pragma once
 
+#include <vmap/axes.h>
 #include <vmap/light_units.h>
 #include <vmap/scene.h>
 
@@ -13,6 +14,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -70,8 +72,9 @@ struct Accessor {
     std::uint64_t offset = 0;
     std::uint64_t count = 0;
     ComponentType component = ComponentType::float32;
-    std::string type;              ///< "VEC3"
-    std::uint32_t components = 1;  ///< per element
+    std::string type;                ///< "VEC3"
+    std::uint32_t components = 1;    ///< per element
+    std::uint32_t element_size = 0;  ///< bytes, with the padding of matrices
     bool normalized = false;
     std::optional<SparseInfo> sparse;
 };
@@ -95,6 +98,7 @@ struct DracoInfo {
 };
 
 struct Primitive {
+    std::string where;  ///< its place in the document, for messages
     Attributes attributes;
     std::optional<std::size_t> indices;
     std::optional<std::size_t> material;
@@ -106,8 +110,9 @@ struct Primitive {
 struct MeshInfo {
     std::string name;
     std::vector<Primitive> primitives;
-    std::vector<double> weights;   ///< one per morph target
-    std::optional<double> radius;  ///< of the points, from our own files' extras
+    std::vector<double> weights;       ///< one per morph target
+    std::optional<double> radius;      ///< of the points, from the extras
+    std::optional<std::size_t> areas;  ///< accessor with the points' areas, from the extras
 };
 
 struct SkinInfo {
@@ -133,7 +138,7 @@ struct Node {
     static constexpr std::uint32_t none = 0xFFFFFFFF;
 
     std::string name;
-    Imath::M44d parent_from_node;  ///< row vectors
+    Imath::M44d pose;  ///< row vectors: parent_from_node as read, world_from_node after place_nodes
     std::vector<std::uint32_t> children;
     std::uint32_t mesh = none;
     std::uint32_t camera = none;
@@ -147,7 +152,16 @@ struct SceneEntry {
     std::vector<std::size_t> roots;
 };
 
+/// What a file of points that this toolkit wrote says about itself.
+struct OwnFile {
+    LightUnits light_units = LightUnits::compat;
+    double exposure = 1;
+    std::string source;
+    UpAxis up = UpAxis::y;
+};
+
 struct Document {
+    std::optional<OwnFile> own;
     std::vector<std::string> extensions_used;
     std::vector<BufferInfo> buffers;
     std::vector<BufferView> views;
@@ -162,6 +176,9 @@ struct Document {
     std::vector<SceneEntry> scenes;
     std::optional<std::size_t> default_scene;
 };
+
+/// Whether a document uses an extension by its own word.
+[[nodiscard]] bool uses_extension(const Document& document, std::string_view name);
 
 /// Reads and checks a document.
 ///

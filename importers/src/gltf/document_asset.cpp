@@ -7,6 +7,8 @@
 #include "extensions.h"
 #include "json_object.h"
 
+#include <vmap/printable.h>
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -51,10 +53,28 @@ void check_asset(const JsonObject& root) {
         throw UnsupportedContent(fmt::format("needs glTF version {}, expected 2.0", *asset.text("minVersion")));
 }
 
+LightUnits read_light_units(const JsonObject& object) {
+    const std::string name = object.text("light_units").value_or("compat");
+    if (name == "compat") return LightUnits::compat;
+    if (name == "spec") return LightUnits::spec;
+    if (name == "raw") return LightUnits::raw;
+    object.fail("light_units", "compat, spec or raw");
+}
+
+OwnFile read_own(const JsonObject& object) {
+    OwnFile own;
+    own.light_units = read_light_units(object);
+    own.exposure = object.number("exposure", above_zero).value_or(1);
+    own.source = printable(object.text("source").value_or(""));
+    own.up = object.text("up").value_or("y") == "z" ? UpAxis::z : UpAxis::y;
+    return own;
+}
+
 }  // namespace
 
 void read_asset_and_extensions(const JsonObject& root, Document& document, Warnings& warnings) {
     check_asset(root);
+    if (const auto own = root.object("asset")->extra_object("vmap")) document.own = read_own(*own);
     for (const std::string& name : root.texts("extensionsRequired"))
         if (find_extension(name).support == ExtensionSupport::unknown)
             throw UnsupportedContent(fmt::format("requires the extension '{}', which is not supported", name));

@@ -15,12 +15,14 @@ constexpr std::uint64_t largest_draco_id = 0xFFFF;
 
 Attributes read_attributes(const JsonObject& object, std::size_t count) {
     Attributes attributes;
-    object.for_each_index(count, [&](const std::string& name, std::size_t index) { attributes.emplace_back(name, index); });
+    object.for_each_index(count,
+                          [&](const std::string& name, std::size_t index) { attributes.emplace_back(name, index); });
     return attributes;
 }
 
 Primitive read_primitive(const JsonObject& object, const Document& document) {
     Primitive primitive;
+    primitive.where = object.where();
     const JsonObject attributes = object.required(object.object("attributes"), "attributes");
     primitive.attributes = read_attributes(attributes, document.accessors.size());
     if (primitive.attributes.empty()) object.fail("attributes", "at least one attribute");
@@ -56,6 +58,7 @@ MeshInfo read_mesh(const JsonObject& object, std::size_t index, const Document& 
         object.fail("weights", fmt::format("one weight for each of {} morph targets", targets));
     mesh.weights.resize(targets, 0.0);
     mesh.radius = object.extra_number("radius");
+    mesh.areas = object.extra_index("areas", document.accessors.size());
     return mesh;
 }
 

@@ -3,10 +3,10 @@
 #include "../content_error.h"
 #include "document_parts.h"
 #include "json_object.h"
+#include "transform.h"
 
 #include <vmap/printable.h>
 
-#include <Imath/ImathQuat.h>
 #include <fmt/format.h>
 
 #include <array>
@@ -16,7 +16,8 @@ namespace vmap::gltf {
 namespace {
 
 Imath::M44d read_matrix(const JsonObject& object) {
-    // Columns in the file, rows in Imath: with column vectors there and row vectors here it is the same order of numbers.
+    // Columns in the file, rows in Imath: with column vectors there and row vectors here it is the same order of
+    // numbers.
     std::array<double, 16> m{};
     object.numbers("matrix", m);
     if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1)
@@ -25,31 +26,29 @@ Imath::M44d read_matrix(const JsonObject& object) {
 }
 
 Imath::M44d read_pose(const JsonObject& object) {
-    std::array<double, 3> t{0, 0, 0};
-    std::array<double, 4> r{0, 0, 0, 1};
-    std::array<double, 3> s{1, 1, 1};
-    object.numbers("translation", t);
-    object.numbers("scale", s);
-    if (object.numbers("rotation", r, {-1.001, 1.001})) {
+    Transform transform;
+    object.numbers("translation", transform.translation);
+    object.numbers("scale", transform.scale);
+    if (object.numbers("rotation", transform.rotation, {-1.001, 1.001})) {
         constexpr double tolerance = 1e-2;  // quantised quaternions are off by less
-        const double length = std::hypot(std::hypot(r[0], r[1]), std::hypot(r[2], r[3]));
+        const auto& [x, y, z, w] = transform.rotation;
+        const double length = std::hypot(std::hypot(x, y), std::hypot(z, w));
         if (std::abs(length - 1) > tolerance)
             throw BrokenContent(fmt::format("{}.rotation has length {:.4g}, expected 1", object.where(), length));
     }
-    Imath::M44d matrix = Imath::Quatd(r[3], r[0], r[1], r[2]).normalized().toMatrix44();
-    for (int row = 0; row < 3; ++row)
-        for (int column = 0; column < 3; ++column) matrix[row][column] *= s[row];
-    for (int column = 0; column < 3; ++column) matrix[3][column] = t[column];
-    return matrix;
+    return matrix_of(transform);
 }
 
 InstancingInfo read_instancing(const JsonObject& extension, const Document& document) {
     const JsonObject attributes = extension.required(extension.object("attributes"), "attributes");
     InstancingInfo instancing;
     attributes.for_each_index(document.accessors.size(), [&](const std::string& name, std::size_t accessor) {
-        if (name == "TRANSLATION") instancing.translation = accessor;
-        else if (name == "ROTATION") instancing.rotation = accessor;
-        else if (name == "SCALE") instancing.scale = accessor;
+        if (name == "TRANSLATION")
+            instancing.translation = accessor;
+        else if (name == "ROTATION")
+            instancing.rotation = accessor;
+        else if (name == "SCALE")
+            instancing.scale = accessor;
     });
     return instancing;
 }
@@ -75,7 +74,7 @@ Node read_node(const JsonObject& object, const Document& document, std::size_t n
     const bool has_pose = object.has("translation") || object.has("rotation") || object.has("scale");
     if (object.has("matrix") && has_pose)
         throw BrokenContent(object.where() + " has a matrix beside translation, rotation or scale");
-    node.parent_from_node = object.has("matrix") ? read_matrix(object) : read_pose(object);
+    node.pose = object.has("matrix") ? read_matrix(object) : read_pose(object);
 
     for (const std::size_t child : object.indices("children", node_count))
         node.children.push_back(static_cast<std::uint32_t>(child));

@@ -33,8 +33,8 @@ ByteRange read_range(const JsonObject& object, std::uint64_t size) {
     const std::uint64_t offset = object.integer("byteOffset", 0, largest_integer).value_or(0);
     const std::uint64_t length = object.required(object.integer("byteLength", 1, largest_integer), "byteLength");
     if (offset > size || length > size - offset)
-        throw BrokenContent(fmt::format("{} covers bytes {} to {} of a buffer of {}", object.where(), offset,
-                                        offset + length, size));
+        throw BrokenContent(
+            fmt::format("{} covers bytes {} to {} of a buffer of {}", object.where(), offset, offset + length, size));
     return {offset, length};
 }
 
@@ -48,17 +48,26 @@ MeshoptView read_meshopt(const JsonObject& object, const Document& document) {
     view.count = object.required(object.integer("count", 1, largest_integer / 256), "count");
 
     const std::string mode = object.required(object.text("mode"), "mode");
-    if (mode == "ATTRIBUTES") view.mode = MeshoptMode::attributes;
-    else if (mode == "TRIANGLES") view.mode = MeshoptMode::triangles;
-    else if (mode == "INDICES") view.mode = MeshoptMode::indices;
-    else object.fail("mode", "ATTRIBUTES, TRIANGLES or INDICES");
+    if (mode == "ATTRIBUTES")
+        view.mode = MeshoptMode::attributes;
+    else if (mode == "TRIANGLES")
+        view.mode = MeshoptMode::triangles;
+    else if (mode == "INDICES")
+        view.mode = MeshoptMode::indices;
+    else
+        object.fail("mode", "ATTRIBUTES, TRIANGLES or INDICES");
 
     const std::string filter = object.text("filter").value_or("NONE");
-    if (filter == "NONE") view.filter = MeshoptFilter::none;
-    else if (filter == "OCTAHEDRAL") view.filter = MeshoptFilter::octahedral;
-    else if (filter == "QUATERNION") view.filter = MeshoptFilter::quaternion;
-    else if (filter == "EXPONENTIAL") view.filter = MeshoptFilter::exponential;
-    else object.fail("filter", "NONE, OCTAHEDRAL, QUATERNION or EXPONENTIAL");
+    if (filter == "NONE")
+        view.filter = MeshoptFilter::none;
+    else if (filter == "OCTAHEDRAL")
+        view.filter = MeshoptFilter::octahedral;
+    else if (filter == "QUATERNION")
+        view.filter = MeshoptFilter::quaternion;
+    else if (filter == "EXPONENTIAL")
+        view.filter = MeshoptFilter::exponential;
+    else
+        object.fail("filter", "NONE, OCTAHEDRAL, QUATERNION or EXPONENTIAL");
     return view;
 }
 
@@ -70,13 +79,15 @@ BufferView read_view(const JsonObject& object, const Document& document) {
     view.length = range.length;
     view.stride = static_cast<std::uint32_t>(object.integer("byteStride", 4, 252).value_or(0));
     if (view.stride % 4 != 0) object.fail("byteStride", "a multiple of 4");
-    if (const auto meshopt = object.extension("EXT_meshopt_compression")) view.meshopt = read_meshopt(*meshopt, document);
+    if (const auto meshopt = object.extension("EXT_meshopt_compression"))
+        view.meshopt = read_meshopt(*meshopt, document);
     return view;
 }
 
 ComponentType read_component_type(const JsonObject& object) {
     const std::uint64_t number = object.required(object.integer("componentType", 0, 0xFFFF), "componentType");
-    if (number < 5120 || number > 5126 || number == 5124) object.fail("componentType", "one of 5120 to 5123, 5125, 5126");
+    if (number < 5120 || number > 5126 || number == 5124)
+        object.fail("componentType", "one of 5120 to 5123, 5125, 5126");
     return static_cast<ComponentType>(number);
 }
 
@@ -86,9 +97,9 @@ struct ElementShape {
     std::uint32_t columns;
 };
 
-constexpr std::array element_shapes{ElementShape{"SCALAR", 1, 1}, ElementShape{"VEC2", 2, 1}, ElementShape{"VEC3", 3, 1},
-                                    ElementShape{"VEC4", 4, 1},   ElementShape{"MAT2", 2, 2}, ElementShape{"MAT3", 3, 3},
-                                    ElementShape{"MAT4", 4, 4}};
+constexpr std::array element_shapes{
+    ElementShape{"SCALAR", 1, 1}, ElementShape{"VEC2", 2, 1}, ElementShape{"VEC3", 3, 1}, ElementShape{"VEC4", 4, 1},
+    ElementShape{"MAT2", 2, 2},   ElementShape{"MAT3", 3, 3}, ElementShape{"MAT4", 4, 4}};
 
 ElementShape read_shape(const JsonObject& object) {
     const std::string type = object.required(object.text("type"), "type");
@@ -158,6 +169,7 @@ Accessor read_accessor(const JsonObject& object, const Document& document) {
     accessor.view = object.index("bufferView", document.views.size());
 
     const std::uint32_t size = element_size(shape, accessor.component);
+    accessor.element_size = size;
     if (accessor.view)
         check_fits(object, document.views[*accessor.view], accessor.offset, accessor.count, size,
                    byte_size(accessor.component));

@@ -53,8 +53,7 @@ Texture read_sampler(const JsonObject& object) {
 std::vector<Texture> read_textures(const JsonObject& root, const Document& document) {
     std::vector<Texture> samplers;
     samplers.reserve(root.array_size("samplers"));
-    root.for_each("samplers",
-                  [&](const JsonObject& object, std::size_t) { samplers.push_back(read_sampler(object)); });
+    root.for_each("samplers", [&](const JsonObject& object, std::size_t) { samplers.push_back(read_sampler(object)); });
 
     std::vector<Texture> textures;
     textures.reserve(root.array_size("textures"));
@@ -78,9 +77,12 @@ ImageInfo read_image(const JsonObject& object, const Document& document) {
     if (image.uri.has_value() == view.has_value())
         throw BrokenContent(object.where() + " has a uri and a bufferView or none of both, expected one");
     image.view = view.value_or(0);
-    if (const std::optional<std::string> name = object.text("name")) image.name = printable(*name);
-    else if (image.uri && !image.uri->starts_with("data:")) image.name = printable(*image.uri);
-    else image.name = object.where();
+    if (const std::optional<std::string> name = object.text("name"))
+        image.name = printable(*name);
+    else if (image.uri && !image.uri->starts_with("data:"))
+        image.name = printable(*image.uri);
+    else
+        image.name = object.where();
     return image;
 }
 
@@ -188,11 +190,16 @@ private:
         if (!material.emits()) material.emission_texture.reset();
     }
 
-    static void read_alpha(const JsonObject& object, Material& material) {
+    void read_alpha(const JsonObject& object, Material& material) {
         const std::string mode = object.text("alphaMode").value_or("OPAQUE");
-        if (mode == "MASK") material.alpha_mode = AlphaMode::mask;
-        else if (mode == "BLEND") material.alpha_mode = AlphaMode::blend;
-        else if (mode != "OPAQUE") object.fail("alphaMode", "OPAQUE, MASK or BLEND");
+        if (mode == "MASK")
+            material.alpha_mode = AlphaMode::mask;
+        else if (mode == "BLEND")
+            material.alpha_mode = AlphaMode::blend;
+        else if (mode != "OPAQUE")
+            object.fail("alphaMode", "OPAQUE, MASK or BLEND");
+        if (mode == "BLEND")
+            warnings_.add("blending by alpha is not modelled: such surfaces are opaque", material.name);
         material.alpha_cutoff = static_cast<float>(object.number("alphaCutoff", not_negative).value_or(0.5));
     }
 

@@ -2,6 +2,7 @@
 #include "json_object.h"
 
 #include "../content_error.h"
+#include "limits.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -14,7 +15,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int deepest_nesting = 512;
 constexpr double largest_exact_integer = 9007199254740992.0;  // 2^53: above it JSON numbers are not exact
 
 /// A value in a message: short, and never a whole sub-tree.
@@ -61,8 +61,10 @@ void check_nesting(std::string_view text) {
     for (std::size_t i = 0; i < text.size(); ++i) {
         const char c = text[i];
         if (in_string) {
-            if (c == '\\') ++i;
-            else if (c == '"') in_string = false;
+            if (c == '\\')
+                ++i;
+            else if (c == '"')
+                in_string = false;
         } else if (c == '"') {
             in_string = true;
         } else if (c == '{' || c == '[') {
@@ -92,7 +94,9 @@ JsonObject::JsonObject(const json& value, std::string where) : value_(&value), w
     if (!value.is_object()) fail_value(where_, value, "an object");
 }
 
-std::string JsonObject::place(const std::string& key) const { return where_.empty() ? key : where_ + "." + key; }
+std::string JsonObject::place(const std::string& key) const {
+    return where_.empty() ? key : where_ + "." + key;
+}
 
 void JsonObject::fail_value(const std::string& where, const json& value, const std::string& expected) {
     throw BrokenContent(fmt::format("{} is {}, expected {}", where, describe(value), expected));
@@ -119,7 +123,9 @@ const json* JsonObject::find_array(const char* key) const {
     return value;
 }
 
-bool JsonObject::has(const char* key) const { return find(key) != nullptr; }
+bool JsonObject::has(const char* key) const {
+    return find(key) != nullptr;
+}
 
 std::optional<std::uint64_t> JsonObject::integer(const char* key, std::uint64_t least, std::uint64_t most) const {
     const json* value = find(key);
@@ -217,11 +223,28 @@ std::optional<JsonObject> JsonObject::extension(const char* name) const {
     return extensions ? extensions->object(name) : std::nullopt;
 }
 
-std::optional<double> JsonObject::extra_number(const char* key) const {
+const json* JsonObject::find_extra(const char* key) const {
     const json* extras = find("extras");
-    if (extras == nullptr || !extras->is_object()) return std::nullopt;
+    if (extras == nullptr || !extras->is_object()) return nullptr;
     const auto found = extras->find(key);
-    return found == extras->end() ? std::nullopt : as_number(*found, {});
+    return found == extras->end() ? nullptr : &*found;
+}
+
+std::optional<double> JsonObject::extra_number(const char* key) const {
+    const json* value = find_extra(key);
+    return value == nullptr ? std::nullopt : as_number(*value, {});
+}
+
+std::optional<std::size_t> JsonObject::extra_index(const char* key, std::size_t count) const {
+    const json* value = find_extra(key);
+    const std::optional<std::uint64_t> index = value == nullptr ? std::nullopt : as_integer(*value);
+    return index && *index < count ? index : std::nullopt;
+}
+
+std::optional<JsonObject> JsonObject::extra_object(const char* key) const {
+    const json* value = find_extra(key);
+    if (value == nullptr || !value->is_object()) return std::nullopt;
+    return JsonObject(*value, place("extras") + "." + key);
 }
 
 std::size_t JsonObject::array_size(const char* key) const {
@@ -254,6 +277,8 @@ JsonDocument::JsonDocument(std::string_view text) : value_(std::make_unique<json
 
 JsonDocument::~JsonDocument() = default;
 
-JsonObject JsonDocument::root() const { return {*value_, ""}; }
+JsonObject JsonDocument::root() const {
+    return {*value_, ""};
+}
 
 }  // namespace vmap::gltf

@@ -61,6 +61,10 @@ public:
 
     /// A number in this object's extras, where anything may stand: nothing unless it is a finite number.
     [[nodiscard]] std::optional<double> extra_number(const char* key) const;
+    /// An index there: nothing unless it is one of an array of that many.
+    [[nodiscard]] std::optional<std::size_t> extra_index(const char* key, std::size_t count) const;
+    /// An object there: nothing unless it is one.
+    [[nodiscard]] std::optional<JsonObject> extra_object(const char* key) const;
 
     /// Number of elements of an array; 0 when the key is missing. An array of the document may not be empty.
     [[nodiscard]] std::size_t array_size(const char* key) const;
@@ -83,6 +87,7 @@ private:
     [[nodiscard]] std::string place(const std::string& key) const;
     [[nodiscard]] const nlohmann::json* find(const char* key) const;
     [[nodiscard]] const nlohmann::json* find_array(const char* key) const;
+    [[nodiscard]] const nlohmann::json* find_extra(const char* key) const;
     [[noreturn]] static void fail_value(const std::string& where, const nlohmann::json& value,
                                         const std::string& expected);
 
