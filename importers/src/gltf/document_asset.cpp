@@ -53,20 +53,18 @@ void check_asset(const JsonObject& root) {
         throw UnsupportedContent(fmt::format("needs glTF version {}, expected 2.0", *asset.text("minVersion")));
 }
 
-LightUnits read_light_units(const JsonObject& object) {
-    const std::string name = object.text("light_units").value_or("compat");
-    if (name == "compat") return LightUnits::compat;
-    if (name == "spec") return LightUnits::spec;
-    if (name == "raw") return LightUnits::raw;
-    object.fail("light_units", "compat, spec or raw");
-}
-
-OwnFile read_own(const JsonObject& object) {
+/// What a writer of ours left in the asset; nothing when another program wrote the file.
+std::optional<OwnFile> read_own(const JsonObject& asset) {
+    const bool ours = asset.text("generator").value_or("").starts_with("vmap ");
+    const std::string units = asset.extra_text("light_units").value_or("");
+    const std::string up = asset.extra_text("up").value_or("");
+    if (!ours || units.empty() || (up != "y" && up != "z")) return std::nullopt;
     OwnFile own;
-    own.light_units = read_light_units(object);
-    own.exposure = object.number("exposure", above_zero).value_or(1);
-    own.source = printable(object.text("source").value_or(""));
-    own.up = object.text("up").value_or("y") == "z" ? UpAxis::z : UpAxis::y;
+    if (units == "spec") own.light_units = LightUnits::spec;
+    if (units == "raw") own.light_units = LightUnits::raw;
+    own.up = up == "z" ? UpAxis::z : UpAxis::y;
+    own.exposure = asset.extra_number("exposure").value_or(1);
+    own.source = printable(asset.extra_text("source").value_or(""));
     return own;
 }
 
@@ -74,7 +72,7 @@ OwnFile read_own(const JsonObject& object) {
 
 void read_asset_and_extensions(const JsonObject& root, Document& document, Warnings& warnings) {
     check_asset(root);
-    if (const auto own = root.object("asset")->extra_object("vmap")) document.own = read_own(*own);
+    document.own = read_own(root.required(root.object("asset"), "asset"));
     for (const std::string& name : root.texts("extensionsRequired"))
         if (find_extension(name).support == ExtensionSupport::unknown)
             throw UnsupportedContent(fmt::format("requires the extension '{}', which is not supported", name));

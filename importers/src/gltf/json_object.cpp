@@ -241,10 +241,10 @@ std::optional<std::size_t> JsonObject::extra_index(const char* key, std::size_t 
     return index && *index < count ? index : std::nullopt;
 }
 
-std::optional<JsonObject> JsonObject::extra_object(const char* key) const {
+std::optional<std::string> JsonObject::extra_text(const char* key) const {
     const json* value = find_extra(key);
-    if (value == nullptr || !value->is_object()) return std::nullopt;
-    return JsonObject(*value, place("extras") + "." + key);
+    if (value == nullptr || !value->is_string()) return std::nullopt;
+    return value->get<std::string>();
 }
 
 std::size_t JsonObject::array_size(const char* key) const {

@@ -63,8 +63,8 @@ public:
     [[nodiscard]] std::optional<double> extra_number(const char* key) const;
     /// An index there: nothing unless it is one of an array of that many.
     [[nodiscard]] std::optional<std::size_t> extra_index(const char* key, std::size_t count) const;
-    /// An object there: nothing unless it is one.
-    [[nodiscard]] std::optional<JsonObject> extra_object(const char* key) const;
+    /// A text there: nothing unless it is one.
+    [[nodiscard]] std::optional<std::string> extra_text(const char* key) const;
 
     /// Number of elements of an array; 0 when the key is missing. An array of the document may not be empty.
     [[nodiscard]] std::size_t array_size(const char* key) const;

@@ -96,11 +96,11 @@ private:
 
     void add_mesh(const Node& node) {
         const MeshInfo& info = document_.meshes[node.mesh];
-        const bool skinned = node.extras && node.extras->skin.has_value();
-        const bool instanced = node.extras && node.extras->instancing.has_value();
+        const NodeExtras none;
+        const NodeExtras& extras = node.extras != nullptr ? *node.extras : none;
         // A skinned mesh is where its joints are; its node's own place does not count.
-        std::vector<M44d> places{skinned ? M44d() : node.pose};
-        if (instanced) places = instance_matrices(document_, *node.extras->instancing, node.pose, buffers_);
+        std::vector<M44d> places{extras.skin ? M44d() : node.pose};
+        if (extras.instancing) places = instance_matrices(document_, *extras.instancing, node.pose, buffers_);
 
         const std::vector<std::size_t> meshes = meshes_of(node);
         for (const M44d& place : places) {
@@ -111,18 +111,18 @@ private:
     }
 
     const std::vector<double>& weights_of(const Node& node) const {
-        const bool own = node.extras && !node.extras->weights.empty();
+        const bool own = node.extras != nullptr && !node.extras->weights.empty();
         return own ? node.extras->weights : document_.meshes[node.mesh].weights;
     }
 
     /// The scene's meshes of a node: shared by all nodes that show the same pose of it.
     std::vector<std::size_t> meshes_of(const Node& node) {
-        const bool own_pose = node.extras && (node.extras->skin || !node.extras->weights.empty());
+        const std::optional<std::size_t> skin = node.extras != nullptr ? node.extras->skin : std::nullopt;
+        const bool own_pose = skin || (node.extras != nullptr && !node.extras->weights.empty());
         std::optional<std::vector<std::size_t>>& shared = shared_meshes_[node.mesh];
         if (!own_pose && shared) return *shared;
         Pose pose{weights_of(node), {}};
-        if (own_pose && node.extras->skin)
-            pose.joints = joint_matrices(document_, document_.skins[*node.extras->skin], buffers_);
+        if (skin) pose.joints = joint_matrices(document_, document_.skins[*skin], buffers_);
         std::vector<std::size_t> meshes = read_meshes(document_.meshes[node.mesh], pose);
         if (!own_pose) shared = meshes;
         return meshes;
@@ -197,7 +197,7 @@ private:
         std::vector<std::size_t> numbers(images.size(), 0);
         for (std::size_t i = 0; i < images.size(); ++i) {
             numbers[i] = scene_.images.size();
-            if (images[i]) scene_.images.push_back(std::move(*images[i]));
+            if (images[i]) scene_.images.push_back(std::move(images[i]).value());
         }
         for (Material& material : scene_.materials) {
             // A material whose metallic parts are not known is more often none than a metal all over.

@@ -20,8 +20,8 @@ namespace vmap {
 ///
 /// Points come from primitives of mode POINTS: normals from NORMAL or _NORMAL, albedo from _ALBEDO or COLOR_0 (linear),
 /// irradiance from _IRRADIANCE, emission from _EMISSION, areas from the accessor that the mesh's extras name as "areas"
-/// or else discs of the extras' "radius". A file is ours when its asset's extras hold an object "vmap" and its points
-/// have normals, areas, albedo and irradiance; the object may say "light_units", "exposure", "source" and "up".
+/// or else from the extras' "radius". A file is ours when its generator is vmap, the extras of its asset hold what our
+/// writer leaves there, and its points have normals, areas, albedo and irradiance.
 ///
 /// - file: told apart by its content, not by its name
 /// - throws FileError when it cannot be read or breaks the specification, UnsupportedInput when it needs an extension
