@@ -4,6 +4,8 @@
 /// things count as touching.
 #pragma once
 
+#include "pencil_tracer.h"
+
 #include <vmap/patch.h>
 #include <vmap/point_cloud.h>
 #include <vmap/polygon_bvh.h>
@@ -30,6 +32,7 @@ struct Surface {
     PatchSet set;             ///< the points of a tile are neighbours in point_order
     std::vector<Tile> tiles;  ///< patch after patch
     PolygonBvh bvh;           ///< over the outlines, those of curved groups grown against cracks
+    PencilTracer pencils;     ///< over the same outlines, for rays from one place
     Imath::Box3f bounds;      ///< of all points
     float diagonal = 0;       ///< of the bounds, world units; never 0
 
