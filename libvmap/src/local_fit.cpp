@@ -12,10 +12,10 @@ using Imath::C3f;
 using Imath::V2f;
 using Imath::V3f;
 
-constexpr int window = 2;                   ///< neighbours on each side
+constexpr int least_window = 2;             ///< neighbours on each side,
+constexpr int most_window = 4;              ///< more of them where there are few, as in the corner of a grid
 constexpr std::size_t quadratic_from = 13;  ///< neighbours that make a quadratic worth fitting
 constexpr std::size_t linear_from = 6;      ///< and a plane
-constexpr std::size_t most_neighbors = 25;  ///< (2 window + 1)^2
 
 using Basis = std::array<double, 6>;
 
@@ -60,6 +60,14 @@ V3f lift_over(const Surface& surface, const Patch& patch) {
 
 }  // namespace
 
+/// The receivers that a fit looks at.
+struct LocalFit::Neighborhood {
+    std::vector<std::uint32_t> receivers;
+    std::vector<V2f> offsets;    ///< from the fitted receiver, in the patch's plane
+    std::vector<double> kernel;  ///< how much each of them counts
+    bool contact = false;
+};
+
 /// What one task makes, before it is put in order.
 struct LocalFit::GridStencils {
     std::vector<std::uint32_t> receivers;
@@ -87,72 +95,81 @@ LocalFit::LocalFit(const Surface& surface, std::span<const ReceiverGrid> grids, 
     }
 }
 
-void LocalFit::add_stencil(const ReceiverGrid& grid, const ReceiverGrid::Vertex& vertex, const Imath::V2i& at,
-                           GridStencils& made) const {
+LocalFit::Neighborhood LocalFit::neighborhood(const ReceiverGrid& grid, const ReceiverGrid::Vertex& vertex,
+                                              const Imath::V2i& at, int window) const {
     const Receiver& own = receivers_[vertex.receiver];
+    const V3f lift = lift_over(*surface_, surface_->set.patches[own.patch]);
     const int size = ReceiverGrid::steps_of(vertex.level);
-    std::array<std::uint32_t, most_neighbors> found{};
-    std::array<V2f, most_neighbors> offset;
-    std::array<double, most_neighbors> kernel{};
-    std::size_t count = 0;
-    bool contact = vertex.contact;
+    Neighborhood found;
     for (int dy = -window; dy <= window; ++dy)
         for (int dx = -window; dx <= window; ++dx) {
             const ReceiverGrid::Vertex* other = grid.vertex_at({at.x + dx * size, at.y + dy * size});
             if (other == nullptr) continue;
-            contact = contact || other->contact;
-            const double near = 1 - (dx * dx + dy * dy) / ((window + 0.9) * (window + 0.9) * 1.3);
-            found.at(count) = other->receiver;
-            offset.at(count) = receivers_[other->receiver].place - own.place;
-            kernel.at(count++) = near * near;
+            const Receiver& neighbor = receivers_[other->receiver];
+            const double reach = window + 0.9;
+            const double near = 1 - (dx * dx + dy * dy) / (1.3 * reach * reach);
+            found.contact = found.contact || other->contact;
+            found.receivers.push_back(other->receiver);
+            found.offsets.emplace_back(neighbor.place - own.place);
+            found.kernel.push_back(std::max(near, 0.05) * std::max(near, 0.05));
         }
-    if (contact) {
-        const V3f lift = lift_over(*surface_, surface_->set.patches[own.patch]);
-        std::size_t kept = 0;
-        for (std::size_t i = 0; i < count; ++i) {
-            const V3f way = receivers_[found.at(i)].position - own.position;
-            if (found.at(i) != vertex.receiver && surface_->bvh.any_hit({own.position + lift, way, 0, 1})) continue;
-            found.at(kept) = found.at(i);
-            offset.at(kept) = offset.at(i);
-            kernel.at(kept++) = kernel.at(i);
-        }
-        count = kept;
+    if (!found.contact) return found;
+    const auto hidden = [&](std::uint32_t receiver) {
+        return receiver != vertex.receiver &&
+               surface_->bvh.any_hit({own.position + lift, receivers_[receiver].position - own.position, 0, 1});
+    };
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < found.receivers.size(); ++i) {
+        if (hidden(found.receivers[i])) continue;
+        found.receivers[kept] = found.receivers[i];
+        found.offsets[kept] = found.offsets[i];
+        found.kernel[kept++] = found.kernel[i];
     }
+    found.receivers.resize(kept);
+    return found;
+}
 
-    const double scale = 1.0 / (size * static_cast<double>(std::max(grid.step().x, grid.step().y)));
-    std::size_t terms = count >= quadratic_from ? 6 : (count >= linear_from ? 3 : 1);
+void LocalFit::add_stencil(const ReceiverGrid& grid, const ReceiverGrid::Vertex& vertex, const Imath::V2i& at,
+                           GridStencils& made) const {
+    Neighborhood near = neighborhood(grid, vertex, at, least_window);
+    for (int window = least_window + 1; window <= most_window && near.receivers.size() < quadratic_from; ++window)
+        near = neighborhood(grid, vertex, at, window);
+    const std::size_t count = near.receivers.size();
+    const double scale =
+        1.0 / (ReceiverGrid::steps_of(vertex.level) * static_cast<double>(std::max(grid.step().x, grid.step().y)));
+    std::vector<Basis> basis(count);
+    for (std::size_t i = 0; i < count; ++i)
+        basis[i] =
+            basis_at(static_cast<double>(near.offsets[i].x) * scale, static_cast<double>(near.offsets[i].y) * scale);
+
     std::array<Basis, 6> inverse{};
+    std::size_t terms = count >= quadratic_from ? 6 : (count >= linear_from ? 3 : 1);
     for (; terms > 1; terms = terms == 6 ? 3 : 1) {
-        std::array<Basis, 6> normal{};
-        for (std::size_t i = 0; i < count; ++i) {
-            const Basis b =
-                basis_at(static_cast<double>(offset.at(i).x) * scale, static_cast<double>(offset.at(i).y) * scale);
+        inverse = {};
+        for (std::size_t i = 0; i < count; ++i)
             for (std::size_t r = 0; r < terms; ++r)
-                for (std::size_t c = 0; c < terms; ++c) normal.at(r).at(c) += kernel.at(i) * b.at(r) * b.at(c);
-        }
-        inverse = normal;
+                for (std::size_t c = 0; c < terms; ++c)
+                    inverse.at(r).at(c) += near.kernel[i] * basis[i].at(r) * basis[i].at(c);
         if (invert(inverse, terms)) break;
     }
+
+    made.receivers.push_back(vertex.receiver);
     if (terms == 1) {
-        made.receivers.push_back(vertex.receiver);
         made.counts.push_back(1);
         made.neighbors.push_back(vertex.receiver);
         made.weights.push_back({1, 0, 0, 0, 0, 0});
         return;
     }
-    made.receivers.push_back(vertex.receiver);
     made.counts.push_back(static_cast<std::uint32_t>(count));
     const std::array<double, 6> units{1, scale, scale, scale * scale, scale * scale, scale * scale};
     for (std::size_t i = 0; i < count; ++i) {
-        const Basis b =
-            basis_at(static_cast<double>(offset.at(i).x) * scale, static_cast<double>(offset.at(i).y) * scale);
         std::array<float, 6> weight{};
         for (std::size_t r = 0; r < terms; ++r) {
             double sum = 0;
-            for (std::size_t c = 0; c < terms; ++c) sum += inverse.at(r).at(c) * b.at(c);
-            weight.at(r) = static_cast<float>(sum * kernel.at(i) * units.at(r));
+            for (std::size_t c = 0; c < terms; ++c) sum += inverse.at(r).at(c) * basis[i].at(c);
+            weight.at(r) = static_cast<float>(sum * near.kernel[i] * units.at(r));
         }
-        made.neighbors.push_back(found.at(i));
+        made.neighbors.push_back(near.receivers[i]);
         made.weights.push_back(weight);
     }
 }

@@ -53,6 +53,9 @@ private:
         std::uint32_t count = 0;
     };
 
+    struct Neighborhood;
+    [[nodiscard]] Neighborhood neighborhood(const ReceiverGrid& grid, const ReceiverGrid::Vertex& vertex,
+                                            const Imath::V2i& at, int window) const;
     struct GridStencils;
     void add_stencil(const ReceiverGrid& grid, const ReceiverGrid::Vertex& vertex, const Imath::V2i& at,
                      GridStencils& made) const;
