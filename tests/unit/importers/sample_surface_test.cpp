@@ -310,8 +310,7 @@ TEST(Texture, FinerThanTheSpacingIsAveraged) {
 TEST(Texture, CoarserThanTheSpacingIsKept) {
     Scene scene = scene_of(grid_mesh(1, 1, 1, 1));
     scene.images = {checkerboard(4)};
-    scene.materials[0].base_color_texture = TextureView{};
-    scene.materials[0].base_color_texture->nearest = true;
+    scene.materials[0].base_color_texture = TextureView{.nearest = true};
     const PointCloud cloud = sample_surface(scene, count_of(20000));
     const auto mixed = std::ranges::count_if(cloud.albedo, [](const C3f& a) { return a.x > 0.01 && a.x < 0.99; });
     EXPECT_LT(mixed, 2000);
@@ -354,8 +353,7 @@ TEST(AlphaMask, CutsPointsAndArea) {
     // The image's left half can be seen through.
     Scene scene = scene_of(grid_mesh(2, 1, 1, 1));
     scene.images = {{.name = "half", .width = 2, .height = 1, .rgba = {255, 255, 255, 0, 255, 255, 255, 255}}};
-    scene.materials[0].base_color_texture = TextureView{};
-    scene.materials[0].base_color_texture->nearest = true;
+    scene.materials[0].base_color_texture = TextureView{.nearest = true};
     scene.materials[0].alpha_mode = AlphaMode::mask;
     for (const SamplePattern pattern : all_patterns) {
         const PointCloud cloud = sample_surface(scene, count_of(3000, pattern));

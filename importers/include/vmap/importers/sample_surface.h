@@ -43,8 +43,9 @@ struct SampleConfig {
 };
 
 struct SampleReport {
-    double area = 0;     ///< lit sides that were sampled, world units squared
-    double spacing = 0;  ///< root of area over points, world units
+    double area = 0;                   ///< lit sides that were sampled, world units squared
+    double spacing = 0;                ///< root of area over points, world units
+    std::size_t degenerate_faces = 0;  ///< triangles without area, left out
     std::vector<std::string> warnings;
 };
 
@@ -53,7 +54,8 @@ struct SampleReport {
 /// threads.
 ///
 /// - scene: indices in range, positions finite, as the importers deliver it
-/// - throws UnsupportedInput for a scene without surface, UsageError for 0 points, for a spacing that is not positive or
+/// - throws UnsupportedInput for a scene without surface, UsageError for 0 points, for a spacing that is not positive
+/// or
 ///   that asks for more points than fit in 32 bits, and for points together with spacing
 [[nodiscard]] PointCloud sample_surface(const Scene& scene, const SampleConfig& config = {},
                                         const ProgressCallback& progress = {}, SampleReport* report = nullptr);
