@@ -81,12 +81,18 @@ class _Reader:
         if not parts:
             raise FileProblem(self.path, "has no points", "a primitive of mode 0 (POINTS)")
         cloud = _joined(parts)
-        cloud.up, cloud.offset = self._up(), tuple(offset.tolist())
+        cloud.offset = tuple(offset.tolist())
+        self._describe(cloud)
         return cloud
 
-    def _up(self):
-        extras = self.document["asset"].get("extras", {})
-        return "z" if isinstance(extras, dict) and extras.get("up") == "z" else "y"
+    def _describe(self, cloud):
+        """What our own writer says about its file."""
+        extras = self.document["asset"].get("extras")
+        extras = extras if isinstance(extras, dict) else {}
+        cloud.up = "z" if extras.get("up") == "z" else "y"
+        exposure = extras.get("exposure", 1)
+        cloud.exposure = float(exposure) if isinstance(exposure, (int, float)) and exposure > 0 else 1.0
+        cloud.info = {key: str(extras[key]) for key in ("light_units", "source") if key in extras}
 
     def _placed_meshes(self):
         """Each mesh of the scene with its world matrix, column vectors."""
@@ -133,9 +139,6 @@ class _Reader:
         if isinstance(radius, (int, float)) and radius > 0:
             scale = abs(np.linalg.det(linear)) ** (1 / 3)
             part.radius = np.full(len(part), radius * scale, np.float32)
-        exposure = extras.get("exposure", 1)
-        part.exposure = float(exposure) if isinstance(exposure, (int, float)) and exposure > 0 else 1.0
-        part.info = {k: str(extras[k]) for k in ("light_units", "vmap", "source") if k in extras}
         return part
 
     def _accessor(self, index):
@@ -211,7 +214,6 @@ def _joined(parts):
     if len(parts) == 1:
         return parts[0]
     result = Cloud(np.concatenate([p.positions for p in parts]))
-    result.exposure, result.info = parts[0].exposure, parts[0].info
     for name in ("normals", "irradiance", "albedo", "emission", "radius"):
         if any(getattr(p, name) is not None for p in parts):
             shape = () if name == "radius" else (3,)

@@ -79,12 +79,21 @@ class Scene:
     placements: list = field(default_factory=list)
     lights: list = field(default_factory=list)
     camera: SceneCamera = None
-    sky: object = None  # (r, g, b) radiance, or an (h, w, 3) float32 panorama, rows from the top
-    not_carried: list = field(default_factory=list)  # one line each: what the program will not see
+    sky: str = ""  # "r,g,b" in W/(m^2 sr), or the path of a panorama
+    skipped: dict = field(default_factory=dict)  # feature that the program will not see -> names that have it
 
-    def skip(self, text):
-        if text not in self.not_carried:
-            self.not_carried.append(text)
+    def skip(self, feature, name):
+        names = self.skipped.setdefault(feature, [])
+        if name not in names:
+            names.append(name)
+
+    def not_carried(self, shown=4):
+        """One line for each feature."""
+        lines = []
+        for feature, names in self.skipped.items():
+            more = f" and {len(names) - shown} more" if len(names) > shown else ""
+            lines.append(f"{feature}: {', '.join(names[:shown])}{more}")
+        return lines
 
     def triangle_count(self):
         return sum(len(p.triangles) for placed in self.placements for p in self.meshes[placed.mesh].parts)

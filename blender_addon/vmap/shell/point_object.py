@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Lit points as a Blender object: a PointCloud where Blender can make one, else a mesh that Geometry Nodes turn into one."""
+
+import bpy
+import numpy as np
+
+from .compat import enabled, fill, new_socket, point_clouds_resize, set_input
+from .point_material import point_material
+
+GROUP_NAME = "vmap points"
+# Name of the array in a Cloud -> name, type and property of the attribute. "normal" is taken in some versions.
+ATTRIBUTES = {
+    "irradiance": ("irradiance", "FLOAT_VECTOR", "vector"),
+    "albedo": ("albedo", "FLOAT_VECTOR", "vector"),
+    "emission": ("emission", "FLOAT_VECTOR", "vector"),
+    "normals": ("nrm", "FLOAT_VECTOR", "vector"),
+    "radius": ("radius", "FLOAT", "value"),
+    "area": ("area", "FLOAT", "value"),
+    "face_id": ("face_id", "INT", "value"),
+    "material_id": ("material_id", "INT", "value"),
+}
+
+
+def point_object(context, cloud, name, exposure=0.0, way="", as_mesh=False):
+    """A new object, linked and selected; exposure 0: what the file suggests; way: see point_material.WAYS."""
+    item = None
+    if point_clouds_resize() and not as_mesh:
+        data = bpy.data.pointclouds.new(name)
+        data.resize(len(cloud))
+        fill_geometry(data, cloud)
+        item = bpy.data.objects.new(name, data)
+        context.collection.objects.link(item)
+    else:
+        data = bpy.data.meshes.new(name)
+        fill_geometry(data, cloud)
+        item = bpy.data.objects.new(name, data)
+        context.collection.objects.link(item)
+        if not as_mesh:
+            _convert(context, item)
+
+    has = {key for key, _ in cloud.arrays()}
+    material = point_material(name, has, exposure or cloud.exposure, way or _first_way(cloud))
+    item.data.materials.append(material)
+    if item.type == "MESH":
+        _show_as_points(item, material)
+    item.location = cloud.offset
+    item["vmap_offset"] = cloud.offset  # doubles: a location has seven digits only
+    for key, value in cloud.info.items():
+        item["vmap_" + key] = value
+    return item
+
+
+def _first_way(cloud):
+    if cloud.irradiance is not None or cloud.emission is not None:
+        return "LIT"
+    return "ALBEDO" if cloud.albedo is not None else "NORMALS"
+
+
+def fill_geometry(data, cloud):
+    """Puts the points into a mesh or a PointCloud of the right size; a mesh is emptied first."""
+    if isinstance(data, bpy.types.Mesh):
+        data.clear_geometry()
+        data.vertices.add(len(cloud))
+    position = data.attributes.get("position")
+    if position is not None:
+        fill(position.data, "vector", cloud.positions)
+    else:
+        fill(data.vertices, "co", cloud.positions)
+    for key, array in cloud.arrays():
+        if key in ATTRIBUTES:
+            name, kind, field = ATTRIBUTES[key]
+            attribute = data.attributes.get(name) or data.attributes.new(name, kind, "POINT")
+            fill(attribute.data, field, np.ascontiguousarray(array))
+    data.update_tag()
+
+
+def _convert(context, item):
+    """Turns the mesh object into a PointCloud object where this Blender can; leaves it alone elsewhere."""
+    targets = bpy.ops.object.convert.get_rna_type().properties["target"].enum_items.keys()
+    if "POINTCLOUD" not in targets:
+        return
+    selected, active = list(context.selected_objects), context.view_layer.objects.active
+    for other in selected:
+        other.select_set(False)
+    item.select_set(True)
+    context.view_layer.objects.active = item
+    mesh = item.data
+    try:
+        with context.temp_override(active_object=item, object=item, selected_objects=[item], selected_editable_objects=[item]):
+            bpy.ops.object.convert(target="POINTCLOUD")
+    except RuntimeError:
+        pass  # it stays a mesh
+    if item.data != mesh and mesh.users == 0:
+        bpy.data.meshes.remove(mesh)
+    item.select_set(False)
+    for other in selected:
+        other.select_set(True)
+    context.view_layer.objects.active = active
+
+
+def _show_as_points(item, material):
+    modifier = item.modifiers.new("vmap points", "NODES")
+    modifier.node_group = bpy.data.node_groups.get(GROUP_NAME) or _points_group()
+    set_input(modifier, "Material", material)
+
+
+def _points_group():
+    """Node group: vertices to points of the radius in the attribute "radius", with a material."""
+    group = bpy.data.node_groups.new(GROUP_NAME, "GeometryNodeTree")
+    new_socket(group, "Geometry", "NodeSocketGeometry")
+    new_socket(group, "Material", "NodeSocketMaterial")
+    new_socket(group, "Geometry", "NodeSocketGeometry", is_output=True)
+    kinds = ("NodeGroupInput", "GeometryNodeInputNamedAttribute", "GeometryNodeMeshToPoints", "GeometryNodeSetMaterial",
+             "NodeGroupOutput")  # fmt: skip
+    start, radius, points, material, end = (group.nodes.new(kind) for kind in kinds)
+    for column, node in enumerate((start, radius, points, material, end)):
+        node.location = (200 * column, 0)
+    radius.data_type = "FLOAT"
+    radius.inputs["Name"].default_value = "radius"
+    link = group.links.new
+    link(start.outputs["Geometry"], points.inputs["Mesh"])
+    link(enabled(radius.outputs, "Attribute"), points.inputs["Radius"])
+    link(points.outputs[0], material.inputs["Geometry"])
+    link(start.outputs["Material"], material.inputs["Material"])
+    link(material.outputs[0], end.inputs["Geometry"])
+    return group
