@@ -16,7 +16,9 @@ ROOT = Path(__file__).resolve().parents[2]
 def data_counts():
     names = ("objects", "meshes", "pointclouds", "volumes", "materials", "node_groups", "collections", "scenes", "worlds",
              "cameras", "lights", "images")  # fmt: skip
-    return {name: len(getattr(bpy.data, name)) for name in names if hasattr(bpy.data, name)}
+    counts = {name: len(getattr(bpy.data, name)) for name in names if hasattr(bpy.data, name)}
+    counts["images"] -= "Render Result" in bpy.data.images  # Blender's own, for whatever is rendered
+    return counts
 
 
 def use_cycles(scene, samples=16):
@@ -65,21 +67,24 @@ def render(scene, folder, width, height=None):
     return pixels
 
 
-def write_vdb(path, irradiance=3.5, voxels=16, voxel=0.125, density=True, points=False, metadata=None, name="irradiance"):
-    """A cube of voxels around the origin, by Debian's OpenVDB module in a process of its own."""
+def write_vdb(path, irradiance=3.5, voxels=16, voxel=0.125, density=True, metadata=None, name="irradiance"):
+    """A cube of voxels around the origin, by Debian's OpenVDB module in a process of its own.
+
+    As in our files the irradiance reaches two voxels further than the density.
+    """
     script = textwrap.dedent(f"""
         import pyopenvdb as vdb, numpy as np
         n, grids = {voxels}, []
         transform = vdb.createLinearTransform(voxelSize={voxel})
         transform.translate((-n * {voxel} / 2 + {voxel} / 2,) * 3)
-        def grid(kind, values, name):
-            g = kind(); g.copyFromArray(values); g.name = name; g.gridClass = vdb.GridClass.FOG_VOLUME
+        def grid(kind, values, name, corner):
+            g = kind(); g.copyFromArray(values, ijk=(corner,) * 3); g.name = name; g.gridClass = vdb.GridClass.FOG_VOLUME
             g.transform = transform
             for key, value in {metadata or {}!r}.items(): g[key] = value
             grids.append(g)
-        if {density}: grid(vdb.FloatGrid, np.ones((n,) * 3, np.float32), "density")
-        field = np.empty((n,) * 3 + (3,), np.float32); field[:] = {irradiance!r}
-        grid(vdb.Vec3SGrid, field, {name!r})
+        if {density}: grid(vdb.FloatGrid, np.ones((n,) * 3, np.float32), "density", 0)
+        field = np.empty((n + 4,) * 3 + (3,), np.float32); field[:] = {irradiance!r}
+        grid(vdb.Vec3SGrid, field, {name!r}, -2)
         vdb.write({str(path)!r}, grids)
     """)
     subprocess.run(["/usr/bin/python3", "-c", script], check=True, capture_output=True, timeout=60)

@@ -20,7 +20,8 @@ def main():
     arguments = sys.argv[sys.argv.index("--") + 1 :] if "--" in sys.argv else sys.argv[1:]
     if not any("blender/" in a for a in arguments):
         arguments.append(str(HERE / "blender"))
-    return pytest.main(["-p", "no:cacheprovider", "-q", "--rootdir", str(HERE), *arguments])
+    options = ["-p", "no:cacheprovider", "-q", "--rootdir", str(HERE), "-o", "filterwarnings=ignore:.*use_nodes"]
+    return pytest.main([*options, *arguments])
 
 
 if __name__ == "__main__":

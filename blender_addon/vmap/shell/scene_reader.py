@@ -86,7 +86,9 @@ def _read_render(scene, read):
     bpy.utils.register_class(VMAP_RE_reader)
     try:
         scene.render.engine = VMAP_RE_reader.bl_idname
-        bpy.ops.render.render(scene=scene.name)
+        # The operator's own argument for a scene would carry the frame of the user's scene over.
+        with bpy.context.temp_override(scene=scene):
+            bpy.ops.render.render()
     except RuntimeError as error:
         failure.append(AddonError(f"Blender cannot evaluate the scene: {error}"))
     finally:

@@ -27,17 +27,18 @@ def volume_object(context, sequence, name, exposure=0.0):
     irradiance = checked_grid(path)
     volume = bpy.data.volumes.new(name)
     volume.filepath = path
+    if not volume.grids.load():
+        raise FileProblem(path, f"Blender cannot read it: {volume.grids.error_message}", "an OpenVDB file")
+    voxel = voxel_size(volume)
     if sequence.animated:
         volume.is_sequence = True
         volume.frame_start = sequence.frames[0]
         volume.frame_offset = sequence.frames[0] - 1
         volume.frame_duration = sequence.frames[-1] - sequence.frames[0] + 1
-    if not volume.grids.load():
-        raise FileProblem(path, f"Blender cannot read it: {volume.grids.error_message}", "an OpenVDB file")
     suggested = irradiance.metadata.get("exposure")
     if not (isinstance(suggested, (int, float)) and suggested > 0):
         suggested = 1.0
-    volume.materials.append(volume_material(name, voxel_size(volume), exposure or suggested))
+    volume.materials.append(volume_material(name, voxel, exposure or suggested))
     item = bpy.data.objects.new(name, volume)
     item[MARK] = True
     if irradiance.metadata.get("up") == "y":

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""GLB and PNG as others read them."""
+"""GLB, PNG and EXR as others read them."""
 
 import json
 import struct
@@ -9,6 +9,7 @@ import core.glb_writer
 import numpy as np
 import pytest
 from core.errors import AddonError
+from core.exr_writer import write_exr
 from core.glb_writer import write_glb
 from core.png import png_bytes
 from core.scene_model import Part, Placement, Scene, SceneCamera, SceneLight, SceneMaterial, SceneMesh, TextureImage
@@ -137,3 +138,15 @@ def test_png(channels):
     size = struct.unpack_from(">I", data, begin - 4)[0]
     rows = np.frombuffer(zlib.decompress(data[begin + 4 : begin + 4 + size]), np.uint8).reshape(5, -1)
     np.testing.assert_array_equal(rows[:, 1:].reshape(pixels.shape), pixels)
+
+
+def test_exr_layout(tmp_path):
+    pixels = np.arange(2 * 3 * 3, dtype=np.float32).reshape(2, 3, 3)
+    write_exr(str(tmp_path / "sky.exr"), pixels)
+    data = (tmp_path / "sky.exr").read_bytes()
+    assert data[:8] == struct.pack("<ii", 20000630, 2)
+    row = 8 + 3 * 4 * 3
+    first = len(data) - 2 * row
+    assert struct.unpack_from("<QQ", data, first - 16) == (first, first + row)
+    blue, green, red = np.frombuffer(data, "<f4", 9, first + 8).reshape(3, 3)
+    np.testing.assert_array_equal(np.stack([red, green, blue], 1), pixels[0])
