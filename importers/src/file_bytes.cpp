@@ -78,4 +78,10 @@ Bytes read_file_start(const std::filesystem::path& path, std::uint64_t length) {
     return file.read(length);
 }
 
+FileHead read_file_head(const std::filesystem::path& path, std::uint64_t most) {
+    const OpenFile file(path);
+    const std::uint64_t size = file.size();
+    return {file.read(std::min(size, most)), size};
+}
+
 }  // namespace vmap

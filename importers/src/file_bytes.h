@@ -41,4 +41,14 @@ private:
 /// - throws BrokenContent as read_file does, and for a file that is shorter
 [[nodiscard]] Bytes read_file_start(const std::filesystem::path& path, std::uint64_t length);
 
+/// The start of a regular file and its size.
+struct FileHead {
+    Bytes bytes;
+    std::uint64_t size = 0;  ///< of the whole file
+};
+
+/// - most: bytes to read; a shorter file is read as a whole
+/// - throws BrokenContent as read_file does
+[[nodiscard]] FileHead read_file_head(const std::filesystem::path& path, std::uint64_t most);
+
 }  // namespace vmap

@@ -50,6 +50,11 @@ float linear_from_srgb8(std::uint8_t sample) {
     return tables().linear[sample];
 }
 
+float linear_from_srgb(float encoded) {
+    if (!(encoded > 0)) return 0;
+    return encoded >= 1 ? 1 : static_cast<float>(linear_from_encoded(encoded));
+}
+
 std::uint8_t srgb8_from_linear(float linear) {
     if (!(linear >= darkest)) return 0;
     if (linear >= 1) return 255;

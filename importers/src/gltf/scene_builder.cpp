@@ -45,7 +45,9 @@ public:
     Input build(const SceneEntry& entry) {
         for (const std::uint32_t node : nodes_of(document_, entry)) add(document_.nodes[node]);
         finish_materials();
-        Input input{std::move(scene_), points_.finish()};
+        Input input{.facts = {.format = "glTF", .up = UpAxis::y, .vertices = 0, .polygons = 0},
+                    .scene = std::move(scene_),
+                    .points = points_.finish()};
         if (input.scene.instances.empty() && !input.points)
             throw UnsupportedContent("holds neither surface nor points");
         return input;
