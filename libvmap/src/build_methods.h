@@ -11,5 +11,6 @@ namespace vmap {
 
 [[nodiscard]] VisibilityMap build_exhaustive(const Tree& tree, const ProgressCallback& progress);
 [[nodiscard]] VisibilityMap build_as_seed(const Tree& tree, const ProgressCallback& progress);
+[[nodiscard]] VisibilityMap build_fast(const Tree& tree, const ProgressCallback& progress);
 
 }  // namespace vmap

@@ -6,7 +6,12 @@
 namespace vmap {
 
 VisibilityMap build_vmap(const Tree& tree, VmapMethod method, const ProgressCallback& progress) {
-    return method == VmapMethod::exhaustive ? build_exhaustive(tree, progress) : build_as_seed(tree, progress);
+    switch (method) {
+        case VmapMethod::exhaustive: return build_exhaustive(tree, progress);
+        case VmapMethod::seed: return build_as_seed(tree, progress);
+        case VmapMethod::fast: break;
+    }
+    return build_fast(tree, progress);
 }
 
 }  // namespace vmap

@@ -39,8 +39,9 @@ std::uint32_t cell_key(const V3i& cell) {
 }  // namespace
 
 PlaneCoordinates to_plane(const LeafPlane& plane, const V3f& place) {
+    // Not fused, here and below, so that every instruction set gives the same bits.
     const auto dot = [&](const V3f& axis, float start) {
-        return std::fma(axis.x, place.x, std::fma(axis.y, place.y, std::fma(axis.z, place.z, start)));
+        return axis.x * place.x + (axis.y * place.y + (axis.z * place.z + start));
     };
     return {dot(plane.u, 0), dot(plane.v, 0), dot(plane.normal, -plane.offset)};
 }
@@ -50,9 +51,9 @@ bool crosses(const LeafPlane& plane, const LeafDisc& disc, const PlaneCoordinate
     const bool upwards = a.height < -plane.slab && b.height > plane.slab;
     if (!downwards && !upwards) return false;
     const float t = a.height / (a.height - b.height);
-    const float du = std::fma(t, b.u - a.u, a.u) - disc.u;
-    const float dv = std::fma(t, b.v - a.v, a.v) - disc.v;
-    return std::fma(du, du, dv * dv) < disc.radius_squared;
+    const float du = (t * (b.u - a.u) + a.u) - disc.u;
+    const float dv = (t * (b.v - a.v) + a.v) - disc.v;
+    return du * du + dv * dv < disc.radius_squared;
 }
 
 LeafVisibility::LeafVisibility(const Tree& tree) : tree_(tree) {

@@ -16,13 +16,14 @@ namespace vmap {
 
 enum class VmapMethod {
     exhaustive,  ///< every pair of leaves on its own, then merged: the oracle. Memory: leaves squared / 8 bytes
-    seed         ///< the seed's recursion over old and new interaction lists, one thread
+    seed,        ///< the seed's recursion over old and new interaction lists, one thread
+    fast         ///< down from pairs of large nodes with the few occluders that reach between them
 };
 
 /// Links of the rule `centroid`.
 ///
 /// - tree: an octree; links are between its nodes
-[[nodiscard]] VisibilityMap build_vmap(const Tree& tree, VmapMethod method = VmapMethod::seed,
+[[nodiscard]] VisibilityMap build_vmap(const Tree& tree, VmapMethod method = VmapMethod::fast,
                                        const ProgressCallback& progress = {});
 
 }  // namespace vmap

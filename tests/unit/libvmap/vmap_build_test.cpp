@@ -50,6 +50,7 @@ TEST(VmapBuild, ThreeMethodsGiveEqualMaps) {
         for_each_tree(size, [](const Tree& tree) {
             const VisibilityMap oracle = build_vmap(tree, VmapMethod::exhaustive);
             EXPECT_TRUE(build_vmap(tree, VmapMethod::seed) == oracle);
+            EXPECT_TRUE(build_vmap(tree, VmapMethod::fast) == oracle);
         });
 }
 

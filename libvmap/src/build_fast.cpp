@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "build_methods.h"
+#include "collect_links.h"
+#include "leaf_blocks.h"
+#include "node_bounds.h"
+#include "occluders.h"
+#include "shaft_cull.h"
+
+#include <vmap/leaf_ranges.h>
+#include <vmap/leaf_visibility.h>
+
+#include <tbb/enumerable_thread_specific.h>
+#include <tbb/task_group.h>
+
+#include <numeric>
+
+namespace vmap {
+namespace {
+
+constexpr std::uint64_t most_block_pairs = 2048;      ///< pairs of leaves that are decided together
+constexpr std::uint64_t least_task_pairs = 1U << 18;  ///< fewer pairs of leaves are not worth a task
+
+class FastBuilder {
+public:
+    FastBuilder(const Tree& tree, const ProgressCallback& progress)
+        : tree_(tree), progress_(progress), visibility_(tree), arrays_(visibility_), occluders_(visibility_),
+          ranges_(leaf_ranges(tree)), bounds_(bound_nodes(visibility_, ranges_)), split_(tree) {}
+
+    VisibilityMap run() {
+        List all(occluders_.all.size());
+        std::iota(all.begin(), all.end(), 0U);
+        const std::vector<NodePair> siblings = sibling_pairs(tree_);
+        tbb::task_group tasks;
+        for (const NodePair& pair : siblings) {
+            const auto decide_pair = [this, &all, pair] {
+                if (decide(pair, all, false) == PairStatus::visible) links_.local().push_back(pair);
+            };
+            if (leaf_pairs(pair) >= least_task_pairs)
+                tasks.run(decide_pair);
+            else
+                decide_pair();
+        }
+        tasks.wait();
+        std::vector<std::vector<NodePair>> links;
+        for (std::vector<NodePair>& part : links_) links.push_back(std::move(part));
+        return collect_links(tree_.nodes.size(), links);
+    }
+
+private:
+    using List = std::vector<std::uint32_t>;
+
+    [[nodiscard]] std::uint64_t leaf_pairs(const NodePair& pair) const {
+        return std::uint64_t{ranges_[pair.first].size()} * ranges_[pair.second].size();
+    }
+
+    /// Links the descendants of two nodes, short of the two themselves.
+    ///
+    /// - list: the occluders that may matter
+    /// - facing: it is known that all their leaves face each other
+    PairStatus decide(const NodePair& pair, std::span<const std::uint32_t> list, bool facing) {
+        if (!facing) {
+            const Facing found = facing_of(visibility_, bounds_[pair.first], bounds_[pair.second]);
+            if (found == Facing::none) return PairStatus::invisible;
+            facing = found == Facing::all;
+        }
+        List left;
+        if (cull_occluders(occluders_, list, bounds_[pair.first].box, bounds_[pair.second].box, left))
+            return PairStatus::invisible;
+        if (facing && left.empty()) return PairStatus::visible;
+
+        const bool small = ranges_[pair.first].size() <= LeafBlock::width &&
+                           ranges_[pair.second].size() <= LeafBlock::width && leaf_pairs(pair) <= most_block_pairs;
+        return small ? decide_block(pair, left, facing) : decide_parts(pair, left, facing);
+    }
+
+    PairStatus decide_parts(const NodePair& pair, const List& list, bool facing) {
+        std::vector<NodePair> parts;
+        split_.for_each_part(tree_, pair, [&](const NodePair& part) { parts.push_back(part); });
+        std::vector<PairStatus> found(parts.size());
+        tbb::task_group tasks;
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            const auto decide_part = [&, i] { found[i] = decide(parts[i], list, facing); };
+            if (leaf_pairs(parts[i]) >= least_task_pairs)
+                tasks.run(decide_part);
+            else
+                decide_part();
+        }
+        tasks.wait();
+        return join(parts, found);
+    }
+
+    PairStatus decide_block(const NodePair& pair, const List& list, bool facing) {
+        LeafBlock block;
+        block.rows = ranges_[pair.first];
+        block.columns = ranges_[pair.second];
+        if (facing)
+            std::fill_n(block.bits.begin(), block.rows.size(), block.all_columns());
+        else
+            keep_facing(arrays_, block);
+        for (const std::uint32_t k : list) {
+            const Occluder& occluder = occluders_.all[k];
+            const PlaneRaster* raster = occluder.raster == no_index ? nullptr : &occluders_.rasters[occluder.raster];
+            if (!clear_blocked(arrays_, occluder, raster, visibility_, block)) return PairStatus::invisible;
+        }
+        return link_block(pair, block);
+    }
+
+    /// The same as `decide` for a part of a block whose bits are final.
+    PairStatus link_block(const NodePair& pair, const LeafBlock& block) {
+        const LeafRange rows = ranges_[pair.first];
+        const LeafRange columns = ranges_[pair.second];
+        const std::uint64_t ones = columns.size() == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << columns.size()) - 1;
+        const std::uint64_t mask = ones << (columns.begin - block.columns.begin);
+        std::uint64_t any = 0;
+        std::uint64_t all = mask;
+        for (std::uint32_t row = rows.begin; row < rows.end; ++row) {
+            const std::uint64_t bits = block.bits[row - block.rows.begin];
+            any |= bits & mask;
+            all &= bits;
+        }
+        if (any == 0) return PairStatus::invisible;
+        if (all == mask) return PairStatus::visible;
+        split_.for_each_part(tree_, pair, [&](const NodePair& part) {
+            if (link_block(part, block) == PairStatus::visible) links_.local().push_back(part);
+        });
+        return PairStatus::partial;
+    }
+
+    /// Links the visible parts of a pair that is not visible as a whole.
+    PairStatus join(const std::vector<NodePair>& parts, const std::vector<PairStatus>& found) {
+        const auto all = [&](PairStatus status) {
+            return std::ranges::all_of(found, [&](PairStatus s) { return s == status; });
+        };
+        if (all(PairStatus::visible)) return PairStatus::visible;
+        if (all(PairStatus::invisible)) return PairStatus::invisible;
+        for (std::size_t i = 0; i < parts.size(); ++i)
+            if (found[i] == PairStatus::visible) links_.local().push_back(parts[i]);
+        return PairStatus::partial;
+    }
+
+    const Tree& tree_;
+    const ProgressCallback& progress_;
+    LeafVisibility visibility_;
+    LeafArrays arrays_;
+    Occluders occluders_;
+    std::vector<LeafRange> ranges_;
+    std::vector<NodeBounds> bounds_;
+    PairSplit split_;
+    tbb::enumerable_thread_specific<std::vector<NodePair>> links_;
+};
+
+}  // namespace
+
+VisibilityMap build_fast(const Tree& tree, const ProgressCallback& progress) {
+    return FastBuilder(tree, progress).run();
+}
+
+}  // namespace vmap
