@@ -27,8 +27,8 @@ public:
           ranges_(leaf_ranges(tree)), bounds_(bound_nodes(visibility_, ranges_)), split_(tree) {}
 
     VisibilityMap run() {
-        List all(occluders_.all.size());
-        std::iota(all.begin(), all.end(), 0U);
+        Candidates all{std::vector<std::uint32_t>(occluders_.walls.size()), DiscList(occluders_.discs)};
+        std::iota(all.walls.begin(), all.walls.end(), 0U);
         const std::vector<NodePair> siblings = sibling_pairs(tree_);
         tbb::task_group tasks;
         for (const NodePair& pair : siblings) {
@@ -47,7 +47,13 @@ public:
     }
 
 private:
-    using List = std::vector<std::uint32_t>;
+    /// The occluders that may matter to a pair.
+    struct Candidates {
+        std::vector<std::uint32_t> walls;
+        DiscList discs;
+
+        [[nodiscard]] bool empty() const { return walls.empty() && discs.empty(); }
+    };
 
     [[nodiscard]] std::uint64_t leaf_pairs(const NodePair& pair) const {
         return std::uint64_t{ranges_[pair.first].size()} * ranges_[pair.second].size();
@@ -55,16 +61,18 @@ private:
 
     /// Links the descendants of two nodes, short of the two themselves.
     ///
-    /// - list: the occluders that may matter
     /// - facing: it is known that all their leaves face each other
-    PairStatus decide(const NodePair& pair, std::span<const std::uint32_t> list, bool facing) {
+    PairStatus decide(const NodePair& pair, const Candidates& candidates, bool facing) {
         if (!facing) {
             const Facing found = facing_of(visibility_, bounds_[pair.first], bounds_[pair.second]);
             if (found == Facing::none) return PairStatus::invisible;
             facing = found == Facing::all;
         }
-        List left;
-        if (cull_occluders(occluders_, list, bounds_[pair.first].box, bounds_[pair.second].box, left))
+        const TurnedBox& first = bounds_[pair.first].box;
+        const TurnedBox& second = bounds_[pair.second].box;
+        Candidates left{{}, DiscList(candidates.discs.size())};
+        if (cull_walls(occluders_.walls, candidates.walls, first, second, left.walls) ||
+            cull_discs(candidates.discs, first, second, !visibility_.walks_cells(), left.discs))
             return PairStatus::invisible;
         if (facing && left.empty()) return PairStatus::visible;
 
@@ -73,13 +81,13 @@ private:
         return small ? decide_block(pair, left, facing) : decide_parts(pair, left, facing);
     }
 
-    PairStatus decide_parts(const NodePair& pair, const List& list, bool facing) {
+    PairStatus decide_parts(const NodePair& pair, const Candidates& candidates, bool facing) {
         std::vector<NodePair> parts;
         split_.for_each_part(tree_, pair, [&](const NodePair& part) { parts.push_back(part); });
         std::vector<PairStatus> found(parts.size());
         tbb::task_group tasks;
         for (std::size_t i = 0; i < parts.size(); ++i) {
-            const auto decide_part = [&, i] { found[i] = decide(parts[i], list, facing); };
+            const auto decide_part = [&, i] { found[i] = decide(parts[i], candidates, facing); };
             if (leaf_pairs(parts[i]) >= least_task_pairs)
                 tasks.run(decide_part);
             else
@@ -89,7 +97,7 @@ private:
         return join(parts, found);
     }
 
-    PairStatus decide_block(const NodePair& pair, const List& list, bool facing) {
+    PairStatus decide_block(const NodePair& pair, const Candidates& candidates, bool facing) {
         LeafBlock block;
         block.rows = ranges_[pair.first];
         block.columns = ranges_[pair.second];
@@ -97,11 +105,10 @@ private:
             std::fill_n(block.bits.begin(), block.rows.size(), block.all_columns());
         else
             keep_facing(arrays_, block);
-        for (const std::uint32_t k : list) {
-            const Occluder& occluder = occluders_.all[k];
-            const PlaneRaster* raster = occluder.raster == no_index ? nullptr : &occluders_.rasters[occluder.raster];
-            if (!clear_blocked(arrays_, occluder, raster, visibility_, block)) return PairStatus::invisible;
-        }
+        for (const std::uint32_t wall : candidates.walls)
+            if (!clear_behind(arrays_, occluders_.walls[wall], block)) return PairStatus::invisible;
+        for (std::size_t i = 0; i < candidates.discs.size(); ++i)
+            if (!clear_behind(arrays_, candidates.discs.at(i), visibility_, block)) return PairStatus::invisible;
         return link_block(pair, block);
     }
 

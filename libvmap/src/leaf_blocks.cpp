@@ -159,10 +159,12 @@ std::uint64_t not_on_walk(const LeafVisibility& visibility, std::uint32_t k, std
     return off;
 }
 
-bool clear_blocked_kernel(const LeafArrays& leaves, const Occluder& occluder, const PlaneRaster* raster,
-                          const LeafVisibility& visibility, LeafBlock& block) {
+/// Clears what blocked(crossing, wanted, i) returns for the columns from i on, for every row that has columns across
+/// the plane.
+template <class Blocked>
+HWY_INLINE bool clear_across(const LeafArrays& leaves, const LeafPlane& plane, LeafBlock& block,
+                             const Blocked& blocked) {
     const Lanes d;
-    const LeafPlane& plane = occluder.plane;
     SeenSide rows;
     SeenSide columns;
     see_side(leaves, block.rows, plane, rows);
@@ -180,21 +182,39 @@ bool clear_blocked_kernel(const LeafArrays& leaves, const Occluder& occluder, co
         std::uint64_t& bits = block.bits[row];
         const std::uint64_t across = height > plane.slab ? below : (height < -plane.slab ? above : 0);
         const std::uint64_t wanted = bits & across;
-        std::uint64_t blocked = 0;
+        std::uint64_t cleared = 0;
         for (std::size_t i = 0; i < block.columns.size(); i += hn::Lanes(d)) {
             const std::uint64_t here = wanted & ((std::uint64_t{1} << (hn::Lanes(d) - 1) << 1) - 1) << i;
-            if (here == 0) continue;
-            const Crossing at = cross(rows.u[row], rows.v[row], height, columns, i);
-            blocked |= raster != nullptr ? inside_raster(at, *raster, here, i) : inside_disc(at, occluder.disc, i);
+            if (here != 0) cleared |= blocked(cross(rows.u[row], rows.v[row], height, columns, i), here, row, i) & here;
         }
-        blocked &= wanted;
-        if (blocked != 0 && visibility.walks_cells())
-            blocked &= ~not_on_walk(visibility, occluder.leaf, block.rows.begin + static_cast<std::uint32_t>(row), block,
-                                    blocked);
-        bits &= ~blocked;
+        bits &= ~cleared;
         left |= bits;
     }
     return left != 0;
+}
+
+bool clear_behind_wall(const LeafArrays& leaves, const WallOccluder& wall, LeafBlock& block) {
+    return clear_across(leaves, wall.plane, block,
+                        [&](const Crossing& at, std::uint64_t wanted, std::size_t, std::size_t i) {
+                            return inside_raster(at, wall.raster, wanted, i);
+                        });
+}
+
+bool clear_behind_disc(const LeafArrays& leaves, const LoneDisc& disc, LeafBlock& block) {
+    return clear_across(leaves, disc.plane, block,
+                        [&](const Crossing& at, std::uint64_t, std::size_t, std::size_t i) {
+                            return inside_disc(at, disc.disc, i);
+                        });
+}
+
+bool clear_behind_disc_on_walk(const LeafArrays& leaves, const LoneDisc& disc, const LeafVisibility& visibility,
+                               LeafBlock& block) {
+    return clear_across(leaves, disc.plane, block,
+                        [&](const Crossing& at, std::uint64_t wanted, std::size_t row, std::size_t i) {
+                            const auto a = block.rows.begin + static_cast<std::uint32_t>(row);
+                            const std::uint64_t inside = inside_disc(at, disc.disc, i) & wanted;
+                            return inside & ~not_on_walk(visibility, disc.leaf, a, block, inside);
+                        });
 }
 
 }  // namespace vmap::HWY_NAMESPACE
@@ -204,7 +224,9 @@ HWY_AFTER_NAMESPACE();
 namespace vmap {
 
 HWY_EXPORT(keep_facing_kernel);
-HWY_EXPORT(clear_blocked_kernel);
+HWY_EXPORT(clear_behind_wall);
+HWY_EXPORT(clear_behind_disc);
+HWY_EXPORT(clear_behind_disc_on_walk);
 
 LeafArrays::LeafArrays(const LeafVisibility& leaves) {
     const std::size_t padded = leaves.size() + LeafBlock::width;
@@ -229,9 +251,14 @@ void keep_facing(const LeafArrays& leaves, LeafBlock& block) {
     HWY_DYNAMIC_DISPATCH(keep_facing_kernel)(leaves, block);
 }
 
-bool clear_blocked(const LeafArrays& leaves, const Occluder& occluder, const PlaneRaster* raster,
-                   const LeafVisibility& visibility, LeafBlock& block) {
-    return HWY_DYNAMIC_DISPATCH(clear_blocked_kernel)(leaves, occluder, raster, visibility, block);
+bool clear_behind(const LeafArrays& leaves, const WallOccluder& wall, LeafBlock& block) {
+    return HWY_DYNAMIC_DISPATCH(clear_behind_wall)(leaves, wall, block);
+}
+
+bool clear_behind(const LeafArrays& leaves, const LoneDisc& disc, const LeafVisibility& visibility, LeafBlock& block) {
+    if (visibility.walks_cells())
+        return HWY_DYNAMIC_DISPATCH(clear_behind_disc_on_walk)(leaves, disc, visibility, block);
+    return HWY_DYNAMIC_DISPATCH(clear_behind_disc)(leaves, disc, block);
 }
 
 }  // namespace vmap

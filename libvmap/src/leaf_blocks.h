@@ -41,10 +41,10 @@ struct LeafBlock {
 /// Sets the bits of the pairs that face each other.
 void keep_facing(const LeafArrays& leaves, LeafBlock& block);
 
-/// Clears the bits of the pairs that an occluder blocks.
+/// Clears the bits of the pairs that an occluder blocks; on a uniform tree only where the disc's leaf is on the walk.
 ///
 /// - returns whether any bit is left
-bool clear_blocked(const LeafArrays& leaves, const Occluder& occluder, const PlaneRaster* raster,
-                   const LeafVisibility& visibility, LeafBlock& block);
+bool clear_behind(const LeafArrays& leaves, const WallOccluder& wall, LeafBlock& block);
+bool clear_behind(const LeafArrays& leaves, const LoneDisc& disc, const LeafVisibility& visibility, LeafBlock& block);
 
 }  // namespace vmap

@@ -10,7 +10,7 @@
 namespace vmap {
 namespace {
 
-constexpr std::uint32_t least_raster_discs = 6;  ///< fewer are tested one by one
+constexpr std::uint32_t least_wall_discs = 6;  ///< fewer are tested one by one
 constexpr double cell_per_radius = 0.15;         ///< edge of a cell, in radii of the plane's median disc
 constexpr double most_cells_per_disc = 256;
 
@@ -145,39 +145,33 @@ PlaneRaster::Cell PlaneRaster::look_up(const PlaneRectangle& rectangle) const {
     return !sticks_out && sum(uncovered_) == 0 ? Cell::covered : Cell::mixed;
 }
 
-Occluders::Occluders(const LeafVisibility& visibility) : cover_counts(!visibility.walks_cells()) {
+Occluders::Occluders(const LeafVisibility& visibility) {
     const auto planes = visibility.planes();
-    const auto discs = visibility.discs();
+    const auto all_discs = visibility.discs();
     std::vector<std::uint32_t> count(planes.size());
-    for (const LeafDisc& disc : discs) ++count[disc.plane];
+    for (const LeafDisc& disc : all_discs) ++count[disc.plane];
 
     // On a uniform tree a disc blocks some segments only, so that each is looked at on its own.
-    const auto has_raster = [&](const LeafDisc& disc) {
-        return !visibility.walks_cells() && count[disc.plane] >= least_raster_discs &&
-               std::isfinite(disc.radius_squared);
+    const auto is_in_wall = [&](const LeafDisc& disc) {
+        return !visibility.walks_cells() && count[disc.plane] >= least_wall_discs && std::isfinite(disc.radius_squared);
     };
     std::vector<std::vector<LeafDisc>> of_plane(planes.size());
-    for (std::uint32_t leaf = 0; leaf < discs.size(); ++leaf) {
-        const LeafDisc& disc = discs[leaf];
-        if (has_raster(disc))
+    for (std::uint32_t leaf = 0; leaf < all_discs.size(); ++leaf) {
+        const LeafDisc& disc = all_discs[leaf];
+        if (is_in_wall(disc))
             of_plane[disc.plane].push_back(disc);
         else
-            all.push_back({planes[disc.plane], bounds_of({&disc, 1}), disc, leaf, no_index});
+            discs.push_back({planes[disc.plane], disc, leaf});
     }
 
-    std::vector<std::uint32_t> raster_planes;
+    std::vector<std::uint32_t> wall_planes;
     for (std::uint32_t p = 0; p < planes.size(); ++p)
-        if (!of_plane[p].empty()) raster_planes.push_back(p);
-    rasters.resize(raster_planes.size());
-    const std::size_t first = all.size();
-    all.resize(first + raster_planes.size());
-    tbb::parallel_for(std::size_t{0}, raster_planes.size(), [&](std::size_t i) {
-        const std::vector<LeafDisc>& in_plane = of_plane[raster_planes[i]];
-        Occluder& occluder = all[first + i];
-        occluder.plane = planes[raster_planes[i]];
-        occluder.bounds = bounds_of(in_plane);
-        occluder.raster = static_cast<std::uint32_t>(i);
-        rasters[i] = PlaneRaster(in_plane, occluder.bounds);
+        if (!of_plane[p].empty()) wall_planes.push_back(p);
+    walls.resize(wall_planes.size());
+    tbb::parallel_for(std::size_t{0}, walls.size(), [&](std::size_t w) {
+        const std::vector<LeafDisc>& in_plane = of_plane[wall_planes[w]];
+        const PlaneRectangle bounds = bounds_of(in_plane);
+        walls[w] = {planes[wall_planes[w]], bounds, PlaneRaster(in_plane, bounds)};
     });
 }
 

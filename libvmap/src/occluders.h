@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The discs of all leaves as occluders of the fast builder: the discs of one plane together are one occluder. Where
-/// many discs make up a wall, a raster of the plane says at once whether a place is covered, and sums over the raster
-/// say it of a rectangle.
+/// The discs of all leaves as occluders of the fast builder. Where many discs lie in one plane they are one occluder, a
+/// wall: a raster of the plane says at once whether a place is covered, and sums over the raster say it of a rectangle.
 ///
 /// This work is based on: F. Crow, "Summed-area tables for texture mapping", SIGGRAPH 1984.
 #pragma once
+
+#include "disc_list.h"
 
 #include <vmap/leaf_visibility.h>
 
@@ -70,21 +71,18 @@ private:
     std::vector<std::uint32_t> uncovered_;  ///< and of those that are not covered
 };
 
-/// One disc, or all discs of a plane that has many.
-struct Occluder {
+/// A plane with many discs.
+struct WallOccluder {
     LeafPlane plane;
-    PlaneRectangle bounds;            ///< of its discs
-    LeafDisc disc;                    ///< of a single disc
-    std::uint32_t leaf = no_index;    ///< of a single disc
-    std::uint32_t raster = no_index;  ///< into Occluders::rasters, of a plane
+    PlaneRectangle bounds;  ///< of its discs
+    PlaneRaster raster;
 };
 
 struct Occluders {
     explicit Occluders(const LeafVisibility& leaves);
 
-    std::vector<Occluder> all;
-    std::vector<PlaneRaster> rasters;
-    bool cover_counts = true;  ///< an occluder that covers a whole shaft blocks it; not so on a uniform tree
+    std::vector<WallOccluder> walls;
+    std::vector<LoneDisc> discs;  ///< all others
 };
 
 }  // namespace vmap

@@ -27,30 +27,26 @@ Interval mix(const Interval& a, const Interval& b, const Interval& t) {
 
 enum class Effect { none, some, all };
 
-/// What an occluder does to the segments that go from heights `ha` on one side of its plane to heights `hb` on the other
+/// What a wall does to the segments that go from heights `ha` on one side of its plane to heights `hb` on the other
 /// side, both counted positive.
-Effect effect_through(const Occluder& occluder, const Occluders& occluders, const TurnedBox& a, const TurnedBox& b,
-                      const Interval& ha, const Interval& hb) {
+Effect effect_through(const WallOccluder& wall, const TurnedBox& a, const TurnedBox& b, const Interval& ha,
+                      const Interval& hb) {
     const Interval t{ha.low / (ha.low + hb.high), ha.high / (ha.high + hb.low)};
-    const LeafPlane& plane = occluder.plane;
+    const LeafPlane& plane = wall.plane;
     const Interval u = mix(along(a, plane.u, 0), along(b, plane.u, 0), t);
-    if (u.high < occluder.bounds.u_min || u.low > occluder.bounds.u_max) return Effect::none;
+    if (u.high < wall.bounds.u_min || u.low > wall.bounds.u_max) return Effect::none;
     const Interval v = mix(along(a, plane.v, 0), along(b, plane.v, 0), t);
-    if (v.high < occluder.bounds.v_min || v.low > occluder.bounds.v_max) return Effect::none;
-    if (occluder.raster != no_index) {
-        switch (occluders.rasters[occluder.raster].look_up({u.low, u.high, v.low, v.high})) {
-            case PlaneRaster::Cell::empty: return Effect::none;
-            case PlaneRaster::Cell::covered: return Effect::all;
-            case PlaneRaster::Cell::mixed: return Effect::some;
-        }
+    if (v.high < wall.bounds.v_min || v.low > wall.bounds.v_max) return Effect::none;
+    switch (wall.raster.look_up({u.low, u.high, v.low, v.high})) {
+        case PlaneRaster::Cell::empty: return Effect::none;
+        case PlaneRaster::Cell::covered: return Effect::all;
+        case PlaneRaster::Cell::mixed: break;
     }
-    const float du = std::max(u.high - occluder.disc.u, occluder.disc.u - u.low);
-    const float dv = std::max(v.high - occluder.disc.v, occluder.disc.v - v.low);
-    return du * du + dv * dv < occluder.disc.radius_squared ? Effect::all : Effect::some;
+    return Effect::some;
 }
 
-Effect effect_of(const Occluder& occluder, const Occluders& occluders, const TurnedBox& a, const TurnedBox& b) {
-    const LeafPlane& plane = occluder.plane;
+Effect effect_of(const WallOccluder& wall, const TurnedBox& a, const TurnedBox& b) {
+    const LeafPlane& plane = wall.plane;
     const Interval ha = along(a, plane.normal, -plane.offset);
     const Interval hb = along(b, plane.normal, -plane.offset);
     const float least = plane.slab - bounds_margin;
@@ -59,10 +55,10 @@ Effect effect_of(const Occluder& occluder, const Occluders& occluders, const Tur
     if (!downwards && !upwards) return Effect::none;
     Effect effect = Effect::none;
     if (downwards)
-        effect = effect_through(occluder, occluders, a, b, {std::max(ha.low, least), ha.high},
+        effect = effect_through(wall, a, b, {std::max(ha.low, least), ha.high},
                                 {std::max(-hb.high, least), -hb.low});
     if (upwards && effect == Effect::none)
-        effect = effect_through(occluder, occluders, a, b, {std::max(-ha.high, least), -ha.low},
+        effect = effect_through(wall, a, b, {std::max(-ha.high, least), -ha.low},
                                 {std::max(hb.low, least), hb.high});
     if (effect != Effect::all) return effect;
     // All that cross are blocked; do all cross?
@@ -73,12 +69,12 @@ Effect effect_of(const Occluder& occluder, const Occluders& occluders, const Tur
 
 }  // namespace
 
-bool cull_occluders(const Occluders& occluders, std::span<const std::uint32_t> list, const TurnedBox& a,
-                    const TurnedBox& b, std::vector<std::uint32_t>& left) {
-    for (const std::uint32_t k : list) {
-        const Effect effect = effect_of(occluders.all[k], occluders, a, b);
-        if (effect == Effect::all && occluders.cover_counts) return true;
-        if (effect != Effect::none) left.push_back(k);
+bool cull_walls(std::span<const WallOccluder> walls, std::span<const std::uint32_t> list, const TurnedBox& a,
+                const TurnedBox& b, std::vector<std::uint32_t>& left) {
+    for (const std::uint32_t w : list) {
+        const Effect effect = effect_of(walls[w], a, b);
+        if (effect == Effect::all) return true;
+        if (effect != Effect::none) left.push_back(w);
     }
     return false;
 }
