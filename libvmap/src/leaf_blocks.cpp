@@ -2,6 +2,8 @@
 // Compiled once per instruction set and chosen at run time.
 #include "leaf_blocks.h"
 
+#include "node_bounds.h"
+
 #include <algorithm>
 #include <cstring>
 
@@ -159,49 +161,138 @@ std::uint64_t not_on_walk(const LeafVisibility& visibility, std::uint32_t k, std
     return off;
 }
 
-/// Clears what blocked(crossing, wanted, i) returns for the columns from i on, for every row that has columns across
-/// the plane.
+/// Where the columns of a block lie as a plane sees those on one side of it; heights counted positive.
+struct ColumnBox {
+    float u_min, u_max;
+    float v_min, v_max;
+    float height_min, height_max;
+};
+
+template <bool above>
+HWY_INLINE ColumnBox box_of(const SeenSide& side, std::size_t count, float slab) {
+    const Lanes d;
+    const auto none = hn::Set(d, 1e30F);
+    auto u_min = none, v_min = none, h_min = none;
+    auto u_max = hn::Neg(none), v_max = u_max, h_max = u_max;
+    for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+        const auto height = above ? hn::Load(d, side.height + i) : hn::Neg(hn::Load(d, side.height + i));
+        const auto there = hn::And(hn::FirstN(d, count - i), hn::Gt(height, hn::Set(d, slab)));
+        const auto u = hn::Load(d, side.u + i);
+        const auto v = hn::Load(d, side.v + i);
+        u_min = hn::Min(u_min, hn::IfThenElse(there, u, none));
+        u_max = hn::Max(u_max, hn::IfThenElse(there, u, hn::Neg(none)));
+        v_min = hn::Min(v_min, hn::IfThenElse(there, v, none));
+        v_max = hn::Max(v_max, hn::IfThenElse(there, v, hn::Neg(none)));
+        h_min = hn::Min(h_min, hn::IfThenElse(there, height, none));
+        h_max = hn::Max(h_max, hn::IfThenElse(there, height, hn::Neg(none)));
+    }
+    const auto least = [&](V x) { return hn::GetLane(hn::MinOfLanes(d, x)); };
+    const auto most = [&](V x) { return hn::GetLane(hn::MaxOfLanes(d, x)); };
+    return {least(u_min), most(u_max), least(v_min), most(v_max), least(h_min), most(h_max)};
+}
+
+/// Rows from which some segment to the box may cross the plane within the disc.
+template <bool above>
+HWY_INLINE std::uint64_t rows_that_may_hit(const SeenSide& rows, std::size_t count, const ColumnBox& box, float slab,
+                                           const LeafDisc& disc) {
+    const Lanes d;
+    std::uint64_t bits = 0;
+    const auto margin = hn::Set(d, bounds_margin);
+    for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+        const auto height = above ? hn::Load(d, rows.height + i) : hn::Neg(hn::Load(d, rows.height + i));
+        const auto t_low = hn::Div(height, hn::Add(height, hn::Set(d, box.height_max)));
+        const auto t_high = hn::Div(height, hn::Add(height, hn::Set(d, box.height_min)));
+        const auto distance = [&](const float* at, float low, float high, float center) {
+            const auto from = hn::Load(d, at + i);
+            const auto to_low = hn::Sub(hn::Set(d, low), from);
+            const auto to_high = hn::Sub(hn::Set(d, high), from);
+            const auto least = hn::Min(hn::MulAdd(t_low, to_low, from), hn::MulAdd(t_high, to_low, from));
+            const auto most = hn::Max(hn::MulAdd(t_low, to_high, from), hn::MulAdd(t_high, to_high, from));
+            const auto middle = hn::Set(d, center);
+            return hn::Max(hn::Sub(hn::Max(hn::Sub(least, middle), hn::Sub(middle, most)), margin), hn::Zero(d));
+        };
+        const auto du = distance(rows.u, box.u_min, box.u_max, disc.u);
+        const auto dv = distance(rows.v, box.v_min, box.v_max, disc.v);
+        const auto misses = hn::Gt(hn::MulAdd(du, du, hn::Mul(dv, dv)), hn::Set(d, disc.radius_squared));
+        bits |= bits_of(hn::AndNot(misses, hn::Gt(height, hn::Set(d, slab))), i);
+    }
+    return bits;
+}
+
+HWY_INLINE std::uint64_t first_bits(std::size_t count) {
+    return count == 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << count) - 1;
+}
+
+/// Clears, for every row in `active`, what blocked(crossing, wanted, row, i) returns for the columns from i on.
 template <class Blocked>
-HWY_INLINE bool clear_across(const LeafArrays& leaves, const LeafPlane& plane, LeafBlock& block,
+HWY_INLINE void clear_rows(const SeenSide& rows, const SeenSide& columns, std::uint64_t active, std::uint64_t across,
+                           LeafBlock& block, const Blocked& blocked) {
+    const Lanes d;
+    for (; active != 0; active &= active - 1) {
+        const auto row = static_cast<std::size_t>(__builtin_ctzll(active));
+        const std::uint64_t wanted = block.bits[row] & across;
+        std::uint64_t cleared = 0;
+        for (std::size_t i = 0; i < block.columns.size(); i += hn::Lanes(d)) {
+            const std::uint64_t here = wanted & first_bits(hn::Lanes(d)) << i;
+            if (here != 0)
+                cleared |= blocked(cross(rows.u[row], rows.v[row], rows.height[row], columns, i), here, row, i) & here;
+        }
+        block.bits[row] &= ~cleared;
+    }
+}
+
+/// The same for all rows from which a disc, or any place when there is none, can be met.
+template <class Blocked>
+HWY_INLINE bool clear_across(const LeafArrays& leaves, const LeafPlane& plane, const LeafDisc* disc, LeafBlock& block,
                              const Blocked& blocked) {
     const Lanes d;
     SeenSide rows;
     SeenSide columns;
     see_side(leaves, block.rows, plane, rows);
     see_side(leaves, block.columns, plane, columns);
-    std::uint64_t above = 0;
-    std::uint64_t below = 0;
-    for (std::size_t i = 0; i < block.columns.size(); i += hn::Lanes(d)) {
-        const auto height = hn::Load(d, columns.height + i);
-        above |= bits_of(hn::Gt(height, hn::Set(d, plane.slab)), i);
-        below |= bits_of(hn::Lt(height, hn::Set(d, -plane.slab)), i);
+    const auto sides = [&](const SeenSide& side, std::size_t count) {
+        std::pair<std::uint64_t, std::uint64_t> bits{0, 0};
+        for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+            const auto height = hn::Load(d, side.height + i);
+            bits.first |= bits_of(hn::Gt(height, hn::Set(d, plane.slab)), i);
+            bits.second |= bits_of(hn::Lt(height, hn::Set(d, -plane.slab)), i);
+        }
+        bits.first &= first_bits(count);
+        bits.second &= first_bits(count);
+        return bits;
+    };
+    const auto [rows_above, rows_below] = sides(rows, block.rows.size());
+    const auto [columns_above, columns_below] = sides(columns, block.columns.size());
+    const std::size_t row_count = block.rows.size();
+    const std::size_t column_count = block.columns.size();
+    if (rows_above != 0 && columns_below != 0) {
+        std::uint64_t active = rows_above;
+        if (disc != nullptr)
+            active &= rows_that_may_hit<true>(rows, row_count, box_of<false>(columns, column_count, plane.slab),
+                                              plane.slab, *disc);
+        clear_rows(rows, columns, active, columns_below, block, blocked);
+    }
+    if (rows_below != 0 && columns_above != 0) {
+        std::uint64_t active = rows_below;
+        if (disc != nullptr)
+            active &= rows_that_may_hit<false>(rows, row_count, box_of<true>(columns, column_count, plane.slab),
+                                               plane.slab, *disc);
+        clear_rows(rows, columns, active, columns_above, block, blocked);
     }
     std::uint64_t left = 0;
-    for (std::size_t row = 0; row < block.rows.size(); ++row) {
-        const float height = rows.height[row];
-        std::uint64_t& bits = block.bits[row];
-        const std::uint64_t across = height > plane.slab ? below : (height < -plane.slab ? above : 0);
-        const std::uint64_t wanted = bits & across;
-        std::uint64_t cleared = 0;
-        for (std::size_t i = 0; i < block.columns.size(); i += hn::Lanes(d)) {
-            const std::uint64_t here = wanted & ((std::uint64_t{1} << (hn::Lanes(d) - 1) << 1) - 1) << i;
-            if (here != 0) cleared |= blocked(cross(rows.u[row], rows.v[row], height, columns, i), here, row, i) & here;
-        }
-        bits &= ~cleared;
-        left |= bits;
-    }
+    for (std::size_t row = 0; row < row_count; ++row) left |= block.bits[row];
     return left != 0;
 }
 
 bool clear_behind_wall(const LeafArrays& leaves, const WallOccluder& wall, LeafBlock& block) {
-    return clear_across(leaves, wall.plane, block,
+    return clear_across(leaves, wall.plane, nullptr, block,
                         [&](const Crossing& at, std::uint64_t wanted, std::size_t, std::size_t i) {
                             return inside_raster(at, wall.raster, wanted, i);
                         });
 }
 
 bool clear_behind_disc(const LeafArrays& leaves, const LoneDisc& disc, LeafBlock& block) {
-    return clear_across(leaves, disc.plane, block,
+    return clear_across(leaves, disc.plane, &disc.disc, block,
                         [&](const Crossing& at, std::uint64_t, std::size_t, std::size_t i) {
                             return inside_disc(at, disc.disc, i);
                         });
@@ -209,7 +300,7 @@ bool clear_behind_disc(const LeafArrays& leaves, const LoneDisc& disc, LeafBlock
 
 bool clear_behind_disc_on_walk(const LeafArrays& leaves, const LoneDisc& disc, const LeafVisibility& visibility,
                                LeafBlock& block) {
-    return clear_across(leaves, disc.plane, block,
+    return clear_across(leaves, disc.plane, &disc.disc, block,
                         [&](const Crossing& at, std::uint64_t wanted, std::size_t row, std::size_t i) {
                             const auto a = block.rows.begin + static_cast<std::uint32_t>(row);
                             const std::uint64_t inside = inside_disc(at, disc.disc, i) & wanted;
