@@ -12,6 +12,8 @@
 #include <tbb/enumerable_thread_specific.h>
 #include <tbb/task_group.h>
 
+#include <algorithm>
+#include <mutex>
 #include <numeric>
 
 namespace vmap {
@@ -23,17 +25,24 @@ constexpr std::uint64_t least_task_pairs = 1U << 18;  ///< fewer pairs of leaves
 class FastBuilder {
 public:
     FastBuilder(const Tree& tree, const ProgressCallback& progress)
-        : tree_(tree), progress_(progress), visibility_(tree), arrays_(visibility_), occluders_(visibility_),
-          ranges_(leaf_ranges(tree)), bounds_(bound_nodes(visibility_, ranges_)), split_(tree) {}
+        : tree_(tree),
+          progress_(progress),
+          visibility_(tree),
+          arrays_(visibility_),
+          occluders_(visibility_),
+          ranges_(leaf_ranges(tree)),
+          bounds_(bound_nodes(visibility_, ranges_)),
+          split_(tree) {}
 
     VisibilityMap run() {
         Candidates all{std::vector<std::uint32_t>(occluders_.walls.size()), DiscList(occluders_.discs)};
         std::iota(all.walls.begin(), all.walls.end(), 0U);
         const std::vector<NodePair> siblings = sibling_pairs(tree_);
+        for (const NodePair& pair : siblings) all_pairs_ += leaf_pairs(pair);
         tbb::task_group tasks;
         for (const NodePair& pair : siblings) {
             const auto decide_pair = [this, &all, pair] {
-                if (decide(pair, all, false) == PairStatus::visible) links_.local().push_back(pair);
+                if (decide(pair, all, false) == PairStatus::visible) link(pair);
             };
             if (leaf_pairs(pair) >= least_task_pairs)
                 tasks.run(decide_pair);
@@ -42,7 +51,7 @@ public:
         }
         tasks.wait();
         std::vector<std::vector<NodePair>> links;
-        for (std::vector<NodePair>& part : links_) links.push_back(std::move(part));
+        for (Share& share : shares_) links.push_back(std::move(share.links));
         return collect_links(tree_.nodes.size(), links);
     }
 
@@ -59,13 +68,33 @@ private:
         return std::uint64_t{ranges_[pair.first].size()} * ranges_[pair.second].size();
     }
 
+    /// What one thread has found.
+    struct Share {
+        std::vector<NodePair> links;
+        std::uint64_t decided_pairs = 0;  ///< of leaves, not yet reported
+    };
+
+    void link(const NodePair& pair) { shares_.local().links.push_back(pair); }
+
+    /// Called once for every pair of leaves, in large portions.
+    PairStatus done(const NodePair& pair, PairStatus status) {
+        std::uint64_t& decided = shares_.local().decided_pairs;
+        decided += leaf_pairs(pair);
+        if (decided > all_pairs_ / 200) {
+            const std::scoped_lock lock(progress_mutex_);
+            decided_pairs_ += std::exchange(decided, 0);
+            report_progress(progress_, "vmap", static_cast<double>(decided_pairs_) / static_cast<double>(all_pairs_));
+        }
+        return status;
+    }
+
     /// Links the descendants of two nodes, short of the two themselves.
     ///
     /// - facing: it is known that all their leaves face each other
     PairStatus decide(const NodePair& pair, const Candidates& candidates, bool facing) {
         if (!facing) {
             const Facing found = facing_of(visibility_, bounds_[pair.first], bounds_[pair.second]);
-            if (found == Facing::none) return PairStatus::invisible;
+            if (found == Facing::none) return done(pair, PairStatus::invisible);
             facing = found == Facing::all;
         }
         const TurnedBox& first = bounds_[pair.first].box;
@@ -73,12 +102,12 @@ private:
         Candidates left{{}, DiscList(candidates.discs.size())};
         if (cull_walls(occluders_.walls, candidates.walls, first, second, left.walls) ||
             cull_discs(candidates.discs, first, second, !visibility_.walks_cells(), left.discs))
-            return PairStatus::invisible;
-        if (facing && left.empty()) return PairStatus::visible;
+            return done(pair, PairStatus::invisible);
+        if (facing && left.empty()) return done(pair, PairStatus::visible);
 
         const bool small = ranges_[pair.first].size() <= LeafBlock::width &&
                            ranges_[pair.second].size() <= LeafBlock::width && leaf_pairs(pair) <= most_block_pairs;
-        return small ? decide_block(pair, left, facing) : decide_parts(pair, left, facing);
+        return small ? done(pair, decide_block(pair, left, facing)) : decide_parts(pair, left, facing);
     }
 
     PairStatus decide_parts(const NodePair& pair, const Candidates& candidates, bool facing) {
@@ -128,7 +157,7 @@ private:
         if (any == 0) return PairStatus::invisible;
         if (all == mask) return PairStatus::visible;
         split_.for_each_part(tree_, pair, [&](const NodePair& part) {
-            if (link_block(part, block) == PairStatus::visible) links_.local().push_back(part);
+            if (link_block(part, block) == PairStatus::visible) link(part);
         });
         return PairStatus::partial;
     }
@@ -141,7 +170,7 @@ private:
         if (all(PairStatus::visible)) return PairStatus::visible;
         if (all(PairStatus::invisible)) return PairStatus::invisible;
         for (std::size_t i = 0; i < parts.size(); ++i)
-            if (found[i] == PairStatus::visible) links_.local().push_back(parts[i]);
+            if (found[i] == PairStatus::visible) link(parts[i]);
         return PairStatus::partial;
     }
 
@@ -153,7 +182,10 @@ private:
     std::vector<LeafRange> ranges_;
     std::vector<NodeBounds> bounds_;
     PairSplit split_;
-    tbb::enumerable_thread_specific<std::vector<NodePair>> links_;
+    tbb::enumerable_thread_specific<Share> shares_;
+    std::uint64_t all_pairs_ = 0;
+    std::uint64_t decided_pairs_ = 0;
+    std::mutex progress_mutex_;
 };
 
 }  // namespace

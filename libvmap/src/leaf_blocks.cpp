@@ -34,8 +34,7 @@ struct SeenSide {
 HWY_INLINE V dot(const Imath::V3f& axis, V x, V y, V z, float start) {
     const Lanes d;
     return hn::Add(hn::Mul(hn::Set(d, axis.x), x),
-                   hn::Add(hn::Mul(hn::Set(d, axis.y), y),
-                           hn::Add(hn::Mul(hn::Set(d, axis.z), z), hn::Set(d, start))));
+                   hn::Add(hn::Mul(hn::Set(d, axis.y), y), hn::Add(hn::Mul(hn::Set(d, axis.z), z), hn::Set(d, start))));
 }
 
 template <class Mask>
@@ -68,7 +67,9 @@ void keep_facing_kernel(const LeafArrays& leaves, LeafBlock& block) {
         const Imath::V3f normal(leaves.normal[0][a], leaves.normal[1][a], leaves.normal[2][a]);
         std::uint64_t bits = 0;
         for (std::size_t i = 0; i < block.columns.size(); i += hn::Lanes(d)) {
-            const auto column = [&](const std::vector<float>& values) { return hn::LoadU(d, values.data() + first + i); };
+            const auto column = [&](const std::vector<float>& values) {
+                return hn::LoadU(d, values.data() + first + i);
+            };
             const auto over_a = dot(normal, column(leaves.centroid[0]), column(leaves.centroid[1]),
                                     column(leaves.centroid[2]), -leaves.offset[a]);
             const auto facing_a = hn::Gt(over_a, hn::Set(d, leaves.slab[a]));
@@ -116,13 +117,14 @@ HWY_INLINE std::uint64_t inside_raster(const Crossing& at, const PlaneRaster& ra
     const auto per_unit = hn::Set(d, raster.per_unit());
     const auto column = hn::Mul(hn::Sub(at.u, hn::Set(d, raster.u_min())), per_unit);
     const auto row = hn::Mul(hn::Sub(at.v, hn::Set(d, raster.v_min())), per_unit);
-    auto in_range = hn::And(hn::Ge(column, hn::Zero(d)), hn::Lt(column, hn::Set(d, static_cast<float>(raster.columns()))));
+    auto in_range =
+        hn::And(hn::Ge(column, hn::Zero(d)), hn::Lt(column, hn::Set(d, static_cast<float>(raster.columns()))));
     in_range = hn::And(in_range,
                        hn::And(hn::Ge(row, hn::Zero(d)), hn::Lt(row, hn::Set(d, static_cast<float>(raster.rows())))));
     if (hn::AllFalse(d, in_range)) return 0;
-    const auto cell = hn::IfThenElseZero(hn::RebindMask(di, in_range),
-                                         hn::Add(hn::Mul(hn::ConvertTo(di, row), hn::Set(di, raster.columns())),
-                                                 hn::ConvertTo(di, column)));
+    const auto cell = hn::IfThenElseZero(
+        hn::RebindMask(di, in_range),
+        hn::Add(hn::Mul(hn::ConvertTo(di, row), hn::Set(di, raster.columns())), hn::ConvertTo(di, column)));
     const auto four = hn::GatherOffset(di, reinterpret_cast<const std::int32_t*>(raster.cells()), cell);
     const auto kind = hn::And(four, hn::Set(di, 0xFF));
     const auto is = [&](PlaneRaster::Cell which) {
@@ -292,10 +294,9 @@ bool clear_behind_wall(const LeafArrays& leaves, const WallOccluder& wall, LeafB
 }
 
 bool clear_behind_disc(const LeafArrays& leaves, const LoneDisc& disc, LeafBlock& block) {
-    return clear_across(leaves, disc.plane, &disc.disc, block,
-                        [&](const Crossing& at, std::uint64_t, std::size_t, std::size_t i) {
-                            return inside_disc(at, disc.disc, i);
-                        });
+    return clear_across(
+        leaves, disc.plane, &disc.disc, block,
+        [&](const Crossing& at, std::uint64_t, std::size_t, std::size_t i) { return inside_disc(at, disc.disc, i); });
 }
 
 bool clear_behind_disc_on_walk(const LeafArrays& leaves, const LoneDisc& disc, const LeafVisibility& visibility,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The rule `centroid` for up to 64 x 64 pairs of leaves at once: the same arithmetic as leaf_visibility.h, many columns
-/// at a time.
+/// The rule `centroid` for up to 64 x 64 pairs of leaves at once: the same arithmetic as leaf_visibility.h, many
+/// columns at a time.
 #pragma once
 
 #include "occluders.h"
@@ -29,8 +29,8 @@ struct LeafArrays {
 struct LeafBlock {
     static constexpr std::size_t width = 64;
 
-    LeafRange rows;     ///< at most width, all before the columns
-    LeafRange columns;  ///< at most width
+    LeafRange rows;                         ///< at most width, all before the columns
+    LeafRange columns;                      ///< at most width
     std::array<std::uint64_t, width> bits;  ///< one word a row, one bit a column
 
     [[nodiscard]] std::uint64_t all_columns() const {

@@ -80,10 +80,9 @@ std::vector<NodeBounds> bound_nodes(const LeafVisibility& leaves, const std::vec
     }
     tbb::parallel_for(std::size_t{0}, bounds.size(), [&](std::size_t n) {
         NodeBounds& own = bounds[n];
-        own.box = own.plane == no_index
-                      ? upright_box(own.upright)
-                      : box_in_plane(leaves.planes()[own.plane],
-                                     leaves.centroids().subspan(ranges[n].begin, ranges[n].size()));
+        own.box = own.plane == no_index ? upright_box(own.upright)
+                                        : box_in_plane(leaves.planes()[own.plane],
+                                                       leaves.centroids().subspan(ranges[n].begin, ranges[n].size()));
     });
     return bounds;
 }

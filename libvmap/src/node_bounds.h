@@ -32,12 +32,12 @@ struct TurnedBox {
 };
 
 struct NodeBounds {
-    TurnedBox box;                    ///< of the centroids; in the frame of the plane when there is only one
-    Imath::Box3f upright;             ///< the same along the axes
-    Imath::Box3f normals;             ///< component by component
-    float slab = 0;                   ///< largest of the planes
-    float least_slab = 0;             ///< smallest of the planes
-    std::uint32_t plane = no_index;   ///< the only plane under the node, or no_index
+    TurnedBox box;                   ///< of the centroids; in the frame of the plane when there is only one
+    Imath::Box3f upright;            ///< the same along the axes
+    Imath::Box3f normals;            ///< component by component
+    float slab = 0;                  ///< largest of the planes
+    float least_slab = 0;            ///< smallest of the planes
+    std::uint32_t plane = no_index;  ///< the only plane under the node, or no_index
 };
 
 [[nodiscard]] std::vector<NodeBounds> bound_nodes(const LeafVisibility& leaves, const std::vector<LeafRange>& ranges);

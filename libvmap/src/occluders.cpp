@@ -11,7 +11,7 @@ namespace vmap {
 namespace {
 
 constexpr std::uint32_t least_wall_discs = 6;  ///< fewer are tested one by one
-constexpr double cell_per_radius = 0.15;         ///< edge of a cell, in radii of the plane's median disc
+constexpr double cell_per_radius = 0.15;       ///< edge of a cell, in radii of the plane's median disc
 constexpr double most_cells_per_disc = 256;
 
 /// Where rounding could decide: no cell is called covered or empty that is so by less.

@@ -38,9 +38,12 @@ Effect effect_through(const WallOccluder& wall, const TurnedBox& a, const Turned
     const Interval v = mix(along(a, plane.v, 0), along(b, plane.v, 0), t);
     if (v.high < wall.bounds.v_min || v.low > wall.bounds.v_max) return Effect::none;
     switch (wall.raster.look_up({u.low, u.high, v.low, v.high})) {
-        case PlaneRaster::Cell::empty: return Effect::none;
-        case PlaneRaster::Cell::covered: return Effect::all;
-        case PlaneRaster::Cell::mixed: break;
+        case PlaneRaster::Cell::empty:
+            return Effect::none;
+        case PlaneRaster::Cell::covered:
+            return Effect::all;
+        case PlaneRaster::Cell::mixed:
+            break;
     }
     return Effect::some;
 }
@@ -55,11 +58,9 @@ Effect effect_of(const WallOccluder& wall, const TurnedBox& a, const TurnedBox& 
     if (!downwards && !upwards) return Effect::none;
     Effect effect = Effect::none;
     if (downwards)
-        effect = effect_through(wall, a, b, {std::max(ha.low, least), ha.high},
-                                {std::max(-hb.high, least), -hb.low});
+        effect = effect_through(wall, a, b, {std::max(ha.low, least), ha.high}, {std::max(-hb.high, least), -hb.low});
     if (upwards && effect == Effect::none)
-        effect = effect_through(wall, a, b, {std::max(-ha.high, least), -ha.low},
-                                {std::max(hb.low, least), hb.high});
+        effect = effect_through(wall, a, b, {std::max(-ha.high, least), -ha.low}, {std::max(hb.low, least), hb.high});
     if (effect != Effect::all) return effect;
     // All that cross are blocked; do all cross?
     const float sure = plane.slab + bounds_margin;

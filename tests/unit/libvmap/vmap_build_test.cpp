@@ -75,5 +75,33 @@ TEST(VmapBuild, EachVisiblePairOfLeavesIsUnderOneLinkAndNoOtherPairUnderAny) {
     });
 }
 
+TEST(VmapBuild, IsTheSameAtAnyNumberOfThreads) {
+    const Tree tree = build_octree(test::packed_room(30'000), {.points_per_leaf = 16});
+    const VisibilityMap map = build_vmap(tree);
+    for (const std::size_t threads : {1, 2, 5}) {
+        const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+        EXPECT_TRUE(build_vmap(tree) == map);
+    }
+}
+
+TEST(VmapBuild, SaysWhereItStandsAndCanBeStopped) {
+    const Tree tree = build_octree(test::packed_room(30'000), {.points_per_leaf = 16});
+    for (const VmapMethod method : {VmapMethod::fast, VmapMethod::seed}) {
+        double last = 0;
+        static_cast<void>(build_vmap(tree, method, [&](std::string_view, double fraction) {
+            EXPECT_GE(fraction, last);
+            EXPECT_LE(fraction, 1);
+            last = fraction;
+        }));
+        EXPECT_GT(last, 0.5);
+        struct Stop {};
+        EXPECT_THROW(static_cast<void>(build_vmap(tree, method,
+                                                  [](std::string_view, double fraction) {
+                                                      if (fraction > 0.1) throw Stop();
+                                                  })),
+                     Stop);
+    }
+}
+
 }  // namespace
 }  // namespace vmap
