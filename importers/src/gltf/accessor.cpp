@@ -79,7 +79,7 @@ void for_each_replaced(const Elements& elements, const Selection& selection, con
             if (*next != elements.replaced[i]) continue;
             place = static_cast<std::size_t>(next - selection.chosen.begin());
         }
-        function(place, elements.replacements + i * size);
+        function(place, elements.replacements.subspan(i * size, size).data());
     }
 }
 
@@ -90,7 +90,7 @@ void open_sparse(const SparseInfo& sparse, Buffers& buffers, Elements& elements)
     indices.component = sparse.index_type;
     indices.stride = byte_size(sparse.index_type);
     elements.replaced = read_integers(indices, buffers);
-    elements.replacements = buffers.view(sparse.value_view).data() + sparse.value_offset;
+    elements.replacements = buffers.view(sparse.value_view).subspan(sparse.value_offset);
     const std::vector<std::uint32_t>& replaced = elements.replaced;
     if (std::adjacent_find(replaced.begin(), replaced.end(), std::greater_equal<>()) != replaced.end())
         throw BrokenContent("a sparse accessor's indices do not increase");

@@ -24,7 +24,7 @@ struct Elements {
 
     /// Sparse replacements: strictly increasing element numbers, and one packed element for each.
     std::vector<std::uint32_t> replaced;
-    const std::byte* replacements = nullptr;
+    std::span<const std::byte> replacements;
 };
 
 /// Finds the bytes of an accessor. Takes no memory for elements that are not stored.

@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include <cassert>
-#include <numeric>
 
 namespace vmap::gltf {
 namespace {
@@ -20,46 +19,47 @@ std::string shortened(const std::string& uri) {
     return uri.size() > longest ? uri.substr(0, longest) + "..." : uri;
 }
 
-Bytes load(const BufferInfo& info, const SceneFolder& folder) {
-    if (std::optional<Bytes> embedded = bytes_from_data_uri(*info.uri)) return std::move(*embedded);
-    return read_file_start(folder.find(path_from_uri(*info.uri)), info.length);
+Bytes load(const std::string& uri, std::uint64_t length, const SceneFolder& folder) {
+    if (std::optional<Bytes> embedded = bytes_from_data_uri(uri)) return std::move(*embedded);
+    return read_file_start(folder.find(path_from_uri(uri)), length);
 }
 
 }  // namespace
 
 Buffers::Buffers(const Document& document, const SceneFolder& folder, std::optional<std::span<const std::byte>> bin)
-    : document_(document), decompressed_(document.views.size()) {
-    for (std::size_t i = 0; i < document.buffers.size(); ++i) {
+    : document_(document), buffers_(document.buffers.size()), decompressed_(document.views.size()) {
+    std::uint64_t stored = 0;
+    for (std::size_t i = 0; i < buffers_.size(); ++i) {
         const BufferInfo& info = document.buffers[i];
-        std::span<const std::byte> bytes;
-        if (info.uri && !info.placeholder) {
+        if (info.fallback) continue;
+        if (info.uri) {
             try {
-                owned_.push_back(load(info, folder));
+                owned_.push_back(load(*info.uri, info.length, folder));
             } catch (const BrokenContent& error) {
                 throw BrokenContent(fmt::format("buffers[{}] '{}': {}", i, shortened(*info.uri), error.what()));
             }
-            bytes = owned_.back().span();
-        } else if (!info.placeholder) {
-            if (!bin) throw BrokenContent(fmt::format("buffers[{}] has neither a uri nor a binary chunk", i));
-            bytes = *bin;
+            buffers_[i] = owned_.back().span();
+        } else if (i == 0) {
+            buffers_[i] = bin;
+        } else {
+            throw BrokenContent(fmt::format("buffers[{}] has no uri: only the first buffer of a GLB may have none", i));
         }
-        if (!info.placeholder && bytes.size() < info.length)
+        std::optional<std::span<const std::byte>>& bytes = buffers_[i];
+        if (!bytes) continue;
+        if (bytes->size() < info.length)
             throw BrokenContent(
-                fmt::format("buffers[{}] has {} bytes, but its byteLength is {}", i, bytes.size(), info.length));
-        buffers_.push_back(info.placeholder ? bytes : bytes.first(info.length));
+                fmt::format("buffers[{}] has {} bytes, but its byteLength is {}", i, bytes->size(), info.length));
+        bytes = bytes->first(info.length);
+        stored += info.length;
     }
-    const std::uint64_t stored =
-        std::accumulate(buffers_.begin(), buffers_.end(), std::uint64_t{0},
-                        [](std::uint64_t sum, const auto& buffer) { return sum + buffer.size(); });
     budget_ = unstored_bytes + stored * most_bytes_per_stored_byte;
 }
 
 std::span<const std::byte> Buffers::range(std::size_t buffer, std::uint64_t offset, std::uint64_t length) const {
-    if (document_.buffers[buffer].placeholder)
-        throw BrokenContent(
-            fmt::format("buffers[{}] has no bytes of its own and is read without decompression", buffer));
-    assert(offset + length <= buffers_[buffer].size());  // checked when the document was read
-    return buffers_[buffer].subspan(offset, length);
+    const std::optional<std::span<const std::byte>>& bytes = buffers_[buffer];
+    if (!bytes) throw BrokenContent(fmt::format("buffers[{}] has no bytes: neither a uri nor a binary chunk", buffer));
+    assert(offset + length <= bytes->size());  // checked when the document was read
+    return bytes->subspan(offset, length);
 }
 
 std::span<const std::byte> Buffers::view(std::size_t index) {

@@ -19,10 +19,11 @@ public:
     /// Loads every buffer: from the GLB's binary chunk, a data URI or a file in the scene's folder.
     ///
     /// - bin: the binary chunk; has to outlive this object
-    /// - throws BrokenContent when a buffer is not there or shorter than the document says
+    /// - throws BrokenContent when a file is not there or shorter than the document says
     Buffers(const Document& document, const SceneFolder& folder, std::optional<std::span<const std::byte>> bin);
 
     /// Bytes of a view; a compressed one is decompressed at the first call.
+    /// - throws BrokenContent for a view of a buffer that has none, and for damaged compressed bytes
     [[nodiscard]] std::span<const std::byte> view(std::size_t index);
 
     /// Bytes between the elements of a view; 0 when they follow each other.
@@ -40,9 +41,9 @@ private:
 
     const Document& document_;
     std::vector<Bytes> owned_;
-    std::vector<std::span<const std::byte>> buffers_;  // empty for placeholders
-    std::vector<std::optional<Bytes>> decompressed_;   // one per view
-    std::uint64_t budget_ = 0;                         // bytes that may still be taken
+    std::vector<std::optional<std::span<const std::byte>>> buffers_;
+    std::vector<std::optional<Bytes>> decompressed_;  // one per view
+    std::uint64_t budget_ = 0;                        // bytes that may still be taken
 };
 
 }  // namespace vmap::gltf

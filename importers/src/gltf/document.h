@@ -29,7 +29,7 @@ class JsonObject;
 struct BufferInfo {
     std::uint64_t length = 0;
     std::optional<std::string> uri;  ///< none: the GLB's binary chunk
-    bool placeholder = false;        ///< without bytes of its own: what refers to it is stored compressed elsewhere
+    bool fallback = false;           ///< without bytes of its own: what refers to it is stored compressed elsewhere
 };
 
 enum class MeshoptMode { attributes, triangles, indices };

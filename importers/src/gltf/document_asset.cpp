@@ -43,14 +43,19 @@ Version read_version(const JsonObject& asset, const char* key) {
     return {*major_number, *minor_number};
 }
 
+std::string text_of(const Version& version) {
+    return fmt::format("{}.{}", version.major_number, version.minor_number);
+}
+
 void check_asset(const JsonObject& root) {
     const JsonObject asset = root.required(root.object("asset"), "asset");
-    if (read_version(asset, "version").major_number != 2)
-        throw UnsupportedContent(fmt::format("glTF version {}, expected 2.x", *asset.text("version")));
+    const Version version = read_version(asset, "version");
+    if (version.major_number != 2)
+        throw UnsupportedContent(fmt::format("glTF version {}, expected 2.x", text_of(version)));
     if (!asset.has("minVersion")) return;
     const Version needed = read_version(asset, "minVersion");
     if (needed.major_number != 2 || needed.minor_number != 0)
-        throw UnsupportedContent(fmt::format("needs glTF version {}, expected 2.0", *asset.text("minVersion")));
+        throw UnsupportedContent(fmt::format("needs glTF version {}, expected 2.0", text_of(needed)));
 }
 
 /// What a writer of ours left in the asset; nothing when another program wrote the file.

@@ -20,9 +20,11 @@ Imath::M44d read_matrix(const JsonObject& object) {
     // numbers.
     std::array<double, 16> m{};
     object.numbers("matrix", m);
-    if (m[3] != 0 || m[7] != 0 || m[11] != 0 || m[15] != 1)
+    constexpr double rounding = 1e-6;
+    if (std::abs(m[3]) > rounding || std::abs(m[7]) > rounding || std::abs(m[11]) > rounding ||
+        std::abs(m[15] - 1) > rounding)
         throw BrokenContent(object.where() + ".matrix is not affine: its last row is not 0 0 0 1");
-    return {m[0], m[1], m[2], m[3], m[4], m[5], m[6], m[7], m[8], m[9], m[10], m[11], m[12], m[13], m[14], m[15]};
+    return {m[0], m[1], m[2], 0, m[4], m[5], m[6], 0, m[8], m[9], m[10], 0, m[12], m[13], m[14], 1};
 }
 
 Imath::M44d read_pose(const JsonObject& object) {

@@ -19,7 +19,7 @@ BufferInfo read_buffer(const JsonObject& object) {
     buffer.length = object.required(object.integer("byteLength", 1, largest_integer), "byteLength");
     buffer.uri = object.text("uri");
     if (const auto meshopt = object.extension("EXT_meshopt_compression"))
-        buffer.placeholder = meshopt->boolean("fallback").value_or(false);
+        buffer.fallback = meshopt->boolean("fallback").value_or(false);
     return buffer;
 }
 
@@ -181,12 +181,8 @@ Accessor read_accessor(const JsonObject& object, const Document& document) {
 
 void read_storage(const JsonObject& root, Document& document) {
     document.buffers.reserve(root.array_size("buffers"));
-    root.for_each("buffers", [&](const JsonObject& object, std::size_t index) {
-        document.buffers.push_back(read_buffer(object));
-        const BufferInfo& buffer = document.buffers.back();
-        if (!buffer.uri && !buffer.placeholder && index > 0)
-            throw BrokenContent(object.where() + " has no uri: only the first buffer of a GLB may have none");
-    });
+    root.for_each("buffers",
+                  [&](const JsonObject& object, std::size_t) { document.buffers.push_back(read_buffer(object)); });
     document.views.reserve(root.array_size("bufferViews"));
     root.for_each("bufferViews", [&](const JsonObject& object, std::size_t) {
         document.views.push_back(read_view(object, document));

@@ -118,7 +118,6 @@ public:
             warnings_.add("normal maps are not used: light falls on the geometric surface");
         if (read_texture(object, "occlusionTexture"))
             warnings_.add("occlusion maps are not used: occlusion is computed");
-        if (material.metallic > 0) warnings_.add("reflection of metals is not modelled: they are dark", material.name);
         return material;
     }
 
@@ -169,9 +168,12 @@ private:
             material.metallic_texture = read_texture(*base, "metallicRoughnessTexture");
         }
         const bool stated = base && (base->has("metallicFactor") || base->has("metallicRoughnessTexture"));
-        if (!stated && !object.extension("KHR_materials_unlit"))
+        if (object.extension("KHR_materials_unlit")) return;
+        if (!stated)
             warnings_.add("a material without metallicFactor is a metal by the specification: its albedo is 0",
                           material.name);
+        else if (material.metallic > 0)
+            warnings_.add("reflection of metals is not modelled: they are dark", material.name);
     }
 
     void read_emission(const JsonObject& object, Material& material) {

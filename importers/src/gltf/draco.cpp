@@ -26,10 +26,10 @@ std::unique_ptr<draco::Mesh> decode(std::span<const std::byte> bytes) {
     try {
         auto result = decoder.DecodeMeshFromBuffer(&buffer);
         if (result.ok() && result.value() != nullptr) return std::move(result).value();
+        throw BrokenContent("its Draco data are damaged");
     } catch (const std::length_error&) {
-        // a damaged size; told below
+        throw BrokenContent("its Draco data claim an impossible size");
     }
-    throw BrokenContent("its Draco data are damaged");
 }
 
 ComponentType component_type(draco::DataType type) {
@@ -91,8 +91,8 @@ const Elements* DracoMesh::find(const std::string& attribute) const {
     return found == attributes.end() ? nullptr : &found->second;
 }
 
-DracoMesh decode_draco(const Document& document, const Primitive& primitive, Buffers& buffers) {
-    const std::span<const std::byte> bytes = buffers.view(primitive.draco->view);
+DracoMesh decode_draco(const Document& document, const Primitive& primitive, const DracoInfo& draco, Buffers& buffers) {
+    const std::span<const std::byte> bytes = buffers.view(draco.view);
     const DracoSizes sizes = read_draco_sizes(bytes);
     if (primitive.indices && document.accessors[*primitive.indices].count != 3 * sizes.faces)
         throw BrokenContent(fmt::format("its Draco data have {} triangles, but its indices are {}", sizes.faces,
@@ -104,7 +104,7 @@ DracoMesh decode_draco(const Document& document, const Primitive& primitive, Buf
     DracoMesh result;
     result.vertex_count = mesh->num_points();
     read_indices(*mesh, result);
-    for (const auto& [name, id] : primitive.draco->attributes) {
+    for (const auto& [name, id] : draco.attributes) {
         const draco::PointAttribute* attribute = mesh->GetAttributeByUniqueId(static_cast<std::uint32_t>(id));
         const std::optional<std::size_t> accessor = find_attribute(primitive.attributes, name);
         if (attribute == nullptr || !accessor)

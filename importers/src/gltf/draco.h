@@ -26,9 +26,10 @@ struct DracoMesh {
     [[nodiscard]] const Elements* find(const std::string& attribute) const;
 };
 
-/// Decompresses a primitive that has draco.
+/// Decompresses a primitive.
 ///
 /// - throws BrokenContent when the bytes are damaged or hold something else than the primitive's accessors say
-[[nodiscard]] DracoMesh decode_draco(const Document& document, const Primitive& primitive, Buffers& buffers);
+[[nodiscard]] DracoMesh decode_draco(const Document& document, const Primitive& primitive, const DracoInfo& draco,
+                                     Buffers& buffers);
 
 }  // namespace vmap::gltf

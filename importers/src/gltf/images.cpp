@@ -75,11 +75,12 @@ std::vector<std::optional<Image>> load_images(const Document& document, const st
 
     std::vector<std::optional<Image>> images(jobs.size());
     for (std::size_t i = 0; i < jobs.size(); ++i) {
-        images[i] = std::move(jobs[i].image);
-        if (images[i])
-            images[i]->name = document.images[i].name;
-        else if (used[i])
+        if (std::optional<Image>& image = jobs[i].image) {
+            image->name = document.images[i].name;
+            images[i] = std::move(image);
+        } else if (used[i]) {
             warnings.add("images that cannot be read are left out", document.images[i].name + ": " + jobs[i].failure);
+        }
     }
     return images;
 }

@@ -6,6 +6,7 @@
 #include "limits.h"
 #include "transform.h"
 
+#include <Imath/ImathQuat.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -64,7 +65,11 @@ std::vector<M44d> instance_matrices(const Document& document, const InstancingIn
             if (!t.empty()) transform.translation[k] = t[3 * i + k];
             if (!s.empty()) transform.scale[k] = s[3 * i + k];
         }
-        for (std::size_t k = 0; k < 4 && !r.empty(); ++k) transform.rotation[k] = r[4 * i + k];
+        if (!r.empty()) {
+            // Quantised: brought back to unit length, because nothing bounds how far they are off.
+            const Imath::Quatd q = Imath::Quatd(r[4 * i + 3], r[4 * i], r[4 * i + 1], r[4 * i + 2]).normalized();
+            transform.rotation = {q.v.x, q.v.y, q.v.z, q.r};
+        }
         matrices.push_back(matrix_of(transform) * world_from_node);
     }
     return matrices;

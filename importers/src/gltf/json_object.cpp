@@ -163,14 +163,13 @@ std::optional<std::size_t> JsonObject::index(const char* key, std::size_t count)
     if (value == nullptr) return std::nullopt;
     const std::optional<std::uint64_t> index = as_integer(*value);
     if (!index || *index >= count) fail(key, fmt::format("an index below {}", count));
-    return *index;
+    return index;
 }
 
 std::vector<std::size_t> JsonObject::indices(const char* key, std::size_t count) const {
     std::vector<std::size_t> indices;
     const json* array = find_array(key);
     if (array == nullptr) return indices;
-    if (array->empty()) fail(key, "an array that is not empty");
     indices.reserve(array->size());
     for (const json& value : *array) {
         const std::optional<std::uint64_t> index = as_integer(value);
@@ -249,9 +248,7 @@ std::optional<std::string> JsonObject::extra_text(const char* key) const {
 
 std::size_t JsonObject::array_size(const char* key) const {
     const json* array = find_array(key);
-    if (array == nullptr) return 0;
-    if (array->empty()) fail(key, "an array that is not empty");
-    return array->size();
+    return array == nullptr ? 0 : array->size();
 }
 
 void JsonObject::for_each(const char* key, const std::function<void(const JsonObject&, std::size_t)>& function) const {

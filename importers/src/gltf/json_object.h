@@ -46,7 +46,7 @@ public:
 
     /// The index of an element of an array of that many.
     [[nodiscard]] std::optional<std::size_t> index(const char* key, std::size_t count) const;
-    /// An array of such indices; not empty.
+    /// An array of such indices.
     [[nodiscard]] std::vector<std::size_t> indices(const char* key, std::size_t count) const;
 
     /// Fills an array of exactly this many numbers; false when the key is missing.
@@ -66,7 +66,8 @@ public:
     /// A text there: nothing unless it is one.
     [[nodiscard]] std::optional<std::string> extra_text(const char* key) const;
 
-    /// Number of elements of an array; 0 when the key is missing. An array of the document may not be empty.
+    /// Number of elements of an array; 0 when the key is missing. The specification wants no empty arrays, but writers
+    /// leave them.
     [[nodiscard]] std::size_t array_size(const char* key) const;
     /// Calls a function with each object of an array and its index.
     void for_each(const char* key, const std::function<void(const JsonObject&, std::size_t)>& function) const;

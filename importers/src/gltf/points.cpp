@@ -132,8 +132,8 @@ void PointCollector::add(const MeshInfo& mesh, const Primitive& primitive, const
     const UpAxis up = document_.own ? document_.own->up : UpAxis::y;
     const bool unturned = turns_nothing(world_from_mesh);
     M44d relative = world_from_mesh;
-    if (!origin_) origin_ = world_from_mesh.translation();
-    for (int i = 0; i < 3; ++i) relative[3][i] -= (*origin_)[i];
+    if (positions_.empty()) origin_ = world_from_mesh.translation();
+    for (int i = 0; i < 3; ++i) relative[3][i] -= origin_[i];
     const std::vector<V3f> positions = reader.positions();
     positions_.reserve(positions_.size() + sequence.size());
     for (const std::uint32_t i : sequence) {
@@ -163,7 +163,7 @@ std::optional<PointFile> PointCollector::finish() {
     if (positions_.empty()) return std::nullopt;
     PointFile file;
     PointCloud& points = file.cloud.points;
-    points.origin = world_from_file(document_.own ? document_.own->up : UpAxis::y, *origin_);
+    points.origin = world_from_file(document_.own ? document_.own->up : UpAxis::y, origin_);
     points.positions = std::move(positions_);
     points.normals = take(normals_);
     points.areas = take(areas_);

@@ -50,7 +50,7 @@ private:
     const Document& document_;
     Buffers& buffers_;
     Warnings& warnings_;
-    std::optional<Imath::V3d> origin_;  // in the frame of the file, whose up axis may be z
+    Imath::V3d origin_;  // of the first primitive, in the frame of the file, whose up axis may be z
     std::vector<Imath::V3f> positions_;
     Column<Imath::V3f> normals_;
     Column<float> areas_;

@@ -199,7 +199,7 @@ private:
         std::vector<std::size_t> numbers(images.size(), 0);
         for (std::size_t i = 0; i < images.size(); ++i) {
             numbers[i] = scene_.images.size();
-            if (images[i]) scene_.images.push_back(std::move(images[i]).value());
+            if (std::optional<Image>& image = images[i]) scene_.images.push_back(std::move(*image));
         }
         for (Material& material : scene_.materials) {
             // A material whose metallic parts are not known is more often none than a metal all over.

@@ -7,7 +7,7 @@ namespace vmap::gltf {
 
 Imath::M44d matrix_of(const Transform& transform) {
     const auto& [x, y, z, w] = transform.rotation;
-    Imath::M44d matrix = Imath::Quatd(w, x, y, z).normalized().toMatrix44();
+    Imath::M44d matrix = Imath::Quatd(w, x, y, z).toMatrix44();
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 3; ++column) matrix[row][column] *= transform.scale[row];
     for (int column = 0; column < 3; ++column) matrix[3][column] = transform.translation[column];

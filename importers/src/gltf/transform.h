@@ -11,11 +11,12 @@ namespace vmap::gltf {
 
 struct Transform {
     std::array<double, 3> translation{0, 0, 0};
-    std::array<double, 4> rotation{0, 0, 0, 1};  ///< quaternion x, y, z, w; normalised where it is used
+    std::array<double, 4> rotation{0, 0, 0, 1};  ///< quaternion x, y, z, w
     std::array<double, 3> scale{1, 1, 1};
 };
 
-/// Scales, then rotates, then translates; for row vectors.
+/// Scales, then rotates, then translates; for row vectors. A quaternion that is a little off unit length is used as it
+/// is, as viewers do.
 [[nodiscard]] Imath::M44d matrix_of(const Transform& transform);
 
 }  // namespace vmap::gltf

@@ -79,7 +79,7 @@ VertexReader::VertexReader(const Document& document, const Primitive& primitive,
     if (!position) return;
     if (primitive.draco) {
         try {
-            draco_ = decode_draco(document, primitive, buffers);
+            draco_ = decode_draco(document, primitive, *primitive.draco, buffers);
         } catch (const BrokenContent& error) {
             throw BrokenContent(fmt::format("{}: {}", primitive.where, error.what()));
         }
@@ -112,22 +112,20 @@ void VertexReader::check_shape(const Accessor& accessor, const std::string& name
     const bool small = !real && accessor.component != ComponentType::uint32;
     const bool is_unsigned = accessor.component == ComponentType::uint8 || accessor.component == ComponentType::uint16;
     const bool quantized = small && uses_extension(document_, "KHR_mesh_quantization");
-    bool sound = quantized;
-    switch (shape.numbers) {
-        case Shape::real:
-            sound = real;
-            break;
-        case Shape::real_or_quantized:
-            sound = real || quantized;
-            break;
-        case Shape::real_or_integer:
-            sound = real || is_unsigned || quantized;
-            break;
-        case Shape::integer:
-            sound = is_unsigned;
-            break;
-    }
-    if (!sound)
+    const auto sound = [&] {
+        switch (shape.numbers) {
+            case Shape::real:
+                return real;
+            case Shape::real_or_quantized:
+                return real || quantized;
+            case Shape::real_or_integer:
+                return real || is_unsigned || quantized;
+            case Shape::integer:
+                break;
+        }
+        return is_unsigned;
+    };
+    if (!sound())
         throw BrokenContent(fmt::format("{} has the componentType {}, which it may not have", place(name),
                                         static_cast<int>(accessor.component)));
 }
