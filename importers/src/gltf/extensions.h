@@ -16,7 +16,7 @@ enum class ExtensionSupport {
 struct Extension {
     std::string_view name;
     ExtensionSupport support = ExtensionSupport::unknown;
-    std::string_view warning = "";  ///< for mapped ones; empty when nothing visible is lost
+    std::string_view warning;  ///< for mapped ones; empty when nothing visible is lost
 };
 
 [[nodiscard]] Extension find_extension(std::string_view name);
