@@ -63,7 +63,7 @@ def python_for(version):
     candidates = [f"/usr/bin/python{version}", shutil.which(f"python{version}")]
     candidates += sorted(map(str, Path.home().glob(f".pyenv/versions/{version}.*/bin/python{version}")))
     for candidate in candidates:
-        if candidate and subprocess.run([candidate, "--version"], capture_output=True).returncode == 0:
+        if candidate and os.access(candidate, os.X_OK) and subprocess.run([candidate, "--version"], capture_output=True).returncode == 0:
             return candidate
     return None
 

@@ -11,7 +11,7 @@ import tempfile
 
 import bpy
 
-from ..core.errors import AddonError
+from ..core.errors import AddonError, printable
 from ..core.glb_writer import write_glb
 from ..core.job import Job, progress_path
 from ..core.light_command import LightRequest, light_command, read_report
@@ -86,6 +86,8 @@ class LightRun:
             next(self._steps)
         except StopIteration:
             return True
+        except OSError as error:
+            raise AddonError(f"{printable(error.filename or 'a file')}: {error.strerror or error}") from None
         return False
 
     def cancel(self):
@@ -148,8 +150,10 @@ class LightRun:
                 job.check()
                 self._note_report(read_report(os.path.join(job.folder, "report.json")))
                 for extension in extensions:
-                    kept = frame_path(self.folder, self.stem, frame, extension)
-                    shutil.move(os.path.join(job.folder, "lit" + extension), kept)
+                    written = os.path.join(job.folder, "lit" + extension)
+                    if not os.path.isfile(written):
+                        raise AddonError(f"the program ended well but wrote no {extension} file")
+                    shutil.move(written, frame_path(self.folder, self.stem, frame, extension))
             finally:
                 self.job = None
 
@@ -203,12 +207,7 @@ class LightRun:
         name = os.path.basename(path)
         if not self.settings.use_frames:
             name = self.stem + os.path.splitext(name)[1]
-        target = os.path.join(self.directory, name)
-        try:
-            shutil.move(path, target)
-        except OSError as error:
-            raise AddonError(f"{target}: cannot write: {error.strerror or error}") from None
-        return target
+        return shutil.move(path, os.path.join(self.directory, name))
 
     def _sequence(self, paths):
         return Sequence(paths, self.frames if len(paths) > 1 else [None])
