@@ -15,9 +15,12 @@ def point_intensity(power):
     return power / (4 * math.pi)
 
 
-def area_radiance(power, area):
-    """W/(m^2 sr) of a flat lamp that sends this power in W out of its front, evenly in the sense of Lambert."""
-    return power / (math.pi * area)
+def area_radiance(power, area, before_4_0=False):
+    """W/(m^2 sr) of a flat lamp that sends this power in W out of its front, evenly in the sense of Lambert.
+
+    Cycles before Blender 4.0 divides by 4 where pi belongs; the picture that its users know is that one.
+    """
+    return power / ((4 if before_4_0 else math.pi) * area)
 
 
 def cone_angles(full_angle, blend):

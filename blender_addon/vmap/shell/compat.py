@@ -47,6 +47,15 @@ def set_input(modifier, name, value):
     modifier.id_data.update_tag()
 
 
+def draw_input(layout, modifier, name):
+    """Shows an input of a Geometry Nodes modifier in a panel."""
+    identifier = input_identifier(modifier.node_group, name)
+    if identifier in modifier.keys():
+        layout.prop(modifier, f'["{identifier}"]', text=name)
+    elif hasattr(modifier, "properties"):
+        layout.prop(getattr(modifier.properties.inputs, identifier), "value", text=name)
+
+
 def enabled(sockets, name=None):
     """The socket that is in use; older nodes have one for each type under the same name."""
     return next(s for s in sockets if s.enabled and (name is None or s.name == name))

@@ -3,11 +3,15 @@
 
 import math
 
+import bpy
 import numpy as np
 
 from ..core.lights import area_radiance, cone_angles, lamp_outline, point_intensity
 from ..core.scene_model import Part, Placement, SceneLight, SceneMaterial, SceneMesh
 from .compat import uses_nodes
+
+# How Cycles takes a lamp's watts is nowhere to be asked: the one place where the version itself counts.
+OLD_LAMPS = bpy.app.version < (4, 0, 0)
 
 
 def add_lamp(scene, name, lamp, matrix):
@@ -32,6 +36,8 @@ def add_lamp(scene, name, lamp, matrix):
         scene.skip("radius of a light (it counts as a point)", name)
     cone = None
     if lamp.type == "SPOT":
+        if OLD_LAMPS and lamp.spot_size > math.radians(30):
+            scene.skip("cosine by which Cycles before Blender 4.0 dims a spot towards its edge", name)
         if lamp.spot_blend > 0:
             scene.skip("shape of a spot's soft edge (glTF has another)", name)
         cone = cone_angles(lamp.spot_size, lamp.spot_blend)
@@ -78,7 +84,8 @@ def _add_area(scene, name, lamp, matrix, color, power):
     if not area > 0:
         scene.skip("area light without size", name)
         return
-    radiance = area_radiance(power, area if getattr(lamp, "normalize", True) else 1.0)
+    shared_by = area if getattr(lamp, "normalize", True) else 1.0
+    radiance = area_radiance(power, shared_by, OLD_LAMPS)
     emission = tuple(radiance * c for c in color)
     scene.materials.append(SceneMaterial(f"lamp {name}", (0, 0, 0), emission=emission, double_sided=False))
     fan = np.array([(0, i, i + 1) for i in range(1, len(corners) - 1)])

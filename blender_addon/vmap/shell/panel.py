@@ -3,12 +3,13 @@
 
 import bpy
 
-from .compat import HAS_SAMPLE_GRID
+from .compat import HAS_SAMPLE_GRID, draw_input
 from .import_points import VMAP_OT_import_points
 from .import_volume import VMAP_OT_import_volume
 from .light_mesh import VMAP_OT_light_mesh
 from .light_operator import VMAP_OT_cancel, VMAP_OT_light, running
 from .point_material import EXPOSURE_NODE, exposure_socket
+from .point_object import MODIFIER_NAME
 from .scene_settings import shown_material
 from .volume_object import MARK as VOLUME_MARK
 
@@ -77,6 +78,9 @@ class VMAP_PT_show(_Panel, bpy.types.Panel):
         if material:
             layout.prop(item, "vmap_show")
             layout.prop(exposure_socket(material), "default_value", text="Exposure")
+            modifier = item.modifiers.get(MODIFIER_NAME)
+            if modifier and modifier.node_group:
+                draw_input(layout, modifier, "Size")
         elif item.type == "VOLUME" and VOLUME_MARK in item and item.data.materials:
             node = item.data.materials[0].node_tree.nodes.get(EXPOSURE_NODE)
             if node:

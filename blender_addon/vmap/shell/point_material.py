@@ -5,6 +5,8 @@ One branch for each way to look at them; the switch links one of them to the Emi
   lit         exposure (emission + albedo irradiance / pi): the radiance that the points send out
   irradiance  exposure irradiance / pi: the same on white paper
   albedo, normals: as they are
+
+A point is seen from the side that its normal points to only: the two sides of a wall do not show through each other.
 """
 
 import math
@@ -32,6 +34,8 @@ def point_material(name, has, exposure, way):
     builder = _Builder(tree)
     builder.build(has, exposure)
     _keep_out_of_light_sampling(material)
+    if hasattr(material, "blend_method"):
+        material.blend_method = "CLIP"  # what EEVEE before 4.2 needs to cut something out
     set_way(material, way)
     return material
 
@@ -73,7 +77,8 @@ class _Builder:
         value.outputs[0].default_value = exposure
         emission = self.node("ShaderNodeEmission", EMISSION_NODE)
         output = self.node("ShaderNodeOutputMaterial")
-        self.tree.links.new(emission.outputs[0], output.inputs["Surface"])
+        shown = self.seen_from_its_front(emission.outputs[0]) if "normals" in has else emission.outputs[0]
+        self.tree.links.new(shown, output.inputs["Surface"])
 
         irradiance = self.attribute("irradiance") if "irradiance" in has else None
         albedo = self.attribute("albedo") if "albedo" in has else None
@@ -91,6 +96,24 @@ class _Builder:
             self.branch("ALBEDO", "SCALE", albedo, scale=1.0)
         if "normals" in has:
             self.branch("NORMALS", "MULTIPLY_ADD", self.attribute("nrm"), (0.5, 0.5, 0.5), (0.5, 0.5, 0.5))
+
+    def seen_from_its_front(self, shader):
+        turn = self.node("ShaderNodeVectorTransform")
+        turn.vector_type, turn.convert_from, turn.convert_to = "NORMAL", "OBJECT", "WORLD"
+        self.tree.links.new(self.attribute("nrm"), turn.inputs[0])
+        facing = self.node("ShaderNodeVectorMath")
+        facing.operation = "DOT_PRODUCT"
+        self.tree.links.new(turn.outputs[0], facing.inputs[0])
+        self.tree.links.new(self.node("ShaderNodeNewGeometry").outputs["Incoming"], facing.inputs[1])
+        front = self.node("ShaderNodeMath")
+        front.operation = "GREATER_THAN"
+        front.inputs[1].default_value = -1e-6  # a point without a normal has no back
+        self.tree.links.new(facing.outputs["Value"], front.inputs[0])
+        mix = self.node("ShaderNodeMixShader")
+        self.tree.links.new(front.outputs[0], mix.inputs[0])
+        self.tree.links.new(self.node("ShaderNodeBsdfTransparent").outputs[0], mix.inputs[1])
+        self.tree.links.new(shader, mix.inputs[2])
+        return mix.outputs[0]
 
     def node(self, kind, name=None):
         node = self.tree.nodes.new(kind)

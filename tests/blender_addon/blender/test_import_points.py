@@ -8,6 +8,7 @@ import pytest
 from blender_helpers import data_counts, look, render, use_cycles
 from sample_files import glb_bytes, grid_positions, our_ply, our_rows, ply_bytes, points_document
 from vmap.shell import point_material
+from vmap.shell.point_object import SHOWN_SIZE
 
 
 def attribute(item, name, field="vector", width=3):
@@ -42,12 +43,12 @@ def test_our_ply_keeps_every_value(write):
     assert item["vmap_source"] == "room.glb"
 
 
-def test_points_have_their_radius_when_evaluated(write):
+def test_points_show_at_their_radius_times_the_size_that_leaves_no_holes(write):
     item = import_points(filepath=write("lit.ply", our_ply([[0, 0, 0], [1, 0, 0]], radius=0.25)))
     depsgraph = bpy.context.evaluated_depsgraph_get()
     clouds = [i.object.data for i in depsgraph.object_instances if i.object.type == "POINTCLOUD"]
     assert len(clouds) == 1
-    assert [p.radius for p in clouds[0].points] == [0.25, 0.25]
+    assert [p.radius for p in clouds[0].points] == pytest.approx([0.25 * SHOWN_SIZE] * 2)
     assert clouds[0].materials[0].name.startswith(item.name)
 
 
@@ -152,11 +153,26 @@ def test_emission_adds_to_the_lit_color(write, tmp_path, empty_scene):
 
 def test_a_sheet_of_points_has_no_holes(write, tmp_path, empty_scene):
     positions = grid_positions(50, 1.0)
+    positions[:, :2] += np.random.default_rng(1).uniform(-0.004, 0.004, (2500, 2))
     radius = (1 / 2500 / math.pi) ** 0.5
-    import_points(filepath=write("sheet.ply", our_ply(positions, irradiance=math.pi, albedo=1, radius=radius * 1.3)))
+    import_points(filepath=write("sheet.ply", our_ply(positions, irradiance=math.pi, albedo=1, radius=radius)))
     use_cycles(empty_scene, 1)
     look(empty_scene, (0, 0, 5), (0, 0, 0), ortho=0.8)
     np.testing.assert_allclose(render(empty_scene, tmp_path, 32)[:, :, :3], 1, rtol=1e-3)
+
+
+def test_the_back_of_a_wall_does_not_show_through(write, tmp_path, empty_scene):
+    """Both sides of a sheet lie in one plane; the front is lit, the back is not."""
+    front, back = our_rows(grid_positions(30), irradiance=math.pi), our_rows(grid_positions(31), irradiance=0)
+    back["nz"] = -1
+    rows = np.concatenate([front, back])
+    rows["radius"] = 0.03
+    item = import_points(filepath=write("wall.ply", ply_bytes(rows)))
+    use_cycles(empty_scene, 1)
+    look(empty_scene, (0, 0, 5), (0, 0, 0), ortho=0.8)
+    np.testing.assert_allclose(render(empty_scene, tmp_path, 16)[:, :, :3], 0.5, rtol=1e-3)
+    item.rotation_euler.x = math.pi
+    np.testing.assert_allclose(render(empty_scene, tmp_path, 16)[:, :, :3], 0, atol=1e-6)
 
 
 def test_a_million_points_within_two_seconds(write):

@@ -35,6 +35,7 @@ def test_out_of_range_colors_are_clipped():
 def test_a_lamp_of_100_watts():
     assert point_intensity(100) == pytest.approx(7.957747)
     assert area_radiance(100, 2) == pytest.approx(100 / (2 * math.pi))
+    assert area_radiance(100, 2, before_4_0=True) == pytest.approx(100 / 8)
 
 
 def test_hard_and_soft_cones():
