@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 namespace vmap {
 namespace {
@@ -48,36 +49,38 @@ PaintImage fill_image(int width, int height, int channels, int bits, const Color
     return image;
 }
 
-/// Reads an image at the texels of another one, which may have a different size.
-class ResampledImage {
+/// Reads an image by coordinates in [0, 1]: at the middle of a texel its very value.
+class ImageReader {
 public:
-    ResampledImage(const Image& image, TexelMeaning meaning, const TextureView& view, const Image& reference)
-        : image_(image), meaning_(meaning), width_(reference.width), height_(reference.height) {
-        if (image.width == width_ && image.height == height_) return;
-        pyramid_.emplace(image, meaning);
+    ImageReader(const Image& image, TexelMeaning meaning, const TextureView& view) : pyramid_(image, meaning) {
         view_.wrap_u = view.wrap_u;
         view_.wrap_v = view.wrap_v;
         view_.nearest = view.nearest;
     }
 
-    [[nodiscard]] C4f at(int x, int y) const {
-        if (pyramid_) return pyramid_->at(view_, V2d((x + 0.5) / width_, (y + 0.5) / height_));
-        const std::uint8_t* bytes = &image_.rgba[4 * (static_cast<std::size_t>(y) * static_cast<std::size_t>(width_) +
-                                                      static_cast<std::size_t>(x))];
-        const auto linear = [&](std::uint8_t sample) {
-            return meaning_ == TexelMeaning::data ? static_cast<float>(sample) / 255 : linear_from_srgb8(sample);
-        };
-        return {linear(bytes[0]), linear(bytes[1]), linear(bytes[2]), static_cast<float>(bytes[3]) / 255};
-    }
+    [[nodiscard]] C4f at(const V2d& coordinate) const { return pyramid_.at(view_, coordinate); }
 
 private:
-    const Image& image_;
-    TexelMeaning meaning_;
-    int width_;
-    int height_;
-    TextureView view_;
-    std::optional<TexturePyramid> pyramid_;
+    TextureView view_;  ///< without the transform
+    TexturePyramid pyramid_;
 };
+
+/// Pixels of a written image in a texel of its reference, along each axis. POV-Ray interpolates what is written: that
+/// is finer than the reference for masks, whose edges it blends over a pixel, for products, and for larger images.
+int oversampling_of(const Image& reference, const std::vector<const Image*>& images, bool masked) {
+    constexpr double fine_enough_for_masks = 2048, largest = 8192, pixels_in_texel = 4, most = 16;
+    const double reference_size = std::max(reference.width, reference.height);
+    double wanted = masked ? fine_enough_for_masks / reference_size : 1;
+    bool same_size = true;
+    double ratio = 1;
+    for (const Image* image : images) {
+        same_size = same_size && image->width == reference.width && image->height == reference.height;
+        ratio = std::max({ratio, static_cast<double>(image->width) / reference.width,
+                          static_cast<double>(image->height) / reference.height});
+    }
+    if (images.size() > 1 || !same_size) wanted = std::max(wanted, pixels_in_texel * ratio);
+    return static_cast<int>(std::clamp(std::min(wanted, largest / reference_size), 1.0, most));
+}
 
 /// Longest edge of a mesh's triangles in the texels of an image.
 double longest_edge(const Scene& scene, const Mesh& mesh, const TextureView& view) {
@@ -111,40 +114,49 @@ Imath::V3d barycentric_at(int x, int y, int tile_size) {
 PaintImage image_of_paint(const Scene& scene, const Paint& paint, PaintLayer layer) {
     const Material& material = scene.materials[paint.material];
     const TextureView& view = paint.view;
-    const Image& reference = scene.images[view.image];
-    const auto reader = [&](const std::optional<TextureView>& texture, TexelMeaning meaning) {
-        std::optional<ResampledImage> image;
-        if (texture) image.emplace(scene.images[texture->image], meaning, view, reference);
+    const bool masked = material.alpha_mode == AlphaMode::mask && material.base_color_texture;
+    const bool is_albedo = layer == PaintLayer::albedo;
+    std::vector<const Image*> images;
+    const auto reader = [&](const std::optional<TextureView>& texture, TexelMeaning meaning, bool used) {
+        std::optional<ImageReader> image;
+        if (!texture || !used) return image;
+        images.push_back(&scene.images[texture->image]);
+        image.emplace(*images.back(), meaning, view);
         return image;
     };
-    const auto base = reader(material.base_color_texture, TexelMeaning::color);
-    const auto metal = reader(material.metallic_texture, TexelMeaning::data);
-    const auto emission = reader(material.emission_texture, TexelMeaning::color);
+    const auto base =
+        reader(material.base_color_texture, masked ? TexelMeaning::cutout : TexelMeaning::color, is_albedo || masked);
+    const auto metal = reader(material.metallic_texture, TexelMeaning::data, is_albedo);
+    const auto emission = reader(material.emission_texture, TexelMeaning::color, !is_albedo);
+    // Clamped images are extended by texels of the view's image, whatever is written.
+    const bool clamps = view.wrap_u == WrapMode::clamp_to_edge || view.wrap_v == WrapMode::clamp_to_edge;
+    const Image& reference = images.size() == 1 && !clamps ? *images.front() : scene.images[view.image];
+    const int oversampling = oversampling_of(reference, images, masked);
 
-    const bool masked = material.alpha_mode == AlphaMode::mask && base;
     const C4f factor = material.base_color * paint.tint;
     const C4f white(1, 1, 1, 1);
-    const auto color = [&](int extended_x, int extended_y) {
-        const int x = source_texel(view.wrap_u, extended_x, reference.width);
-        const int y = source_texel(view.wrap_v, extended_y, reference.height);
-        const C4f base_color = (base ? base->at(x, y) : white) * factor;
+    const auto color = [&](int x, int y) {
+        const V2d place(source_coordinate(view.wrap_u, (x + 0.5) / oversampling, reference.width),
+                        source_coordinate(view.wrap_v, (y + 0.5) / oversampling, reference.height));
+        const C4f base_color = (base ? base->at(place) : white) * factor;
         C4f result = white;
-        if (layer == PaintLayer::albedo)
-            result = base_color * (1 - material.metallic * (metal ? metal->at(x, y).b : 1));
+        if (is_albedo)
+            result = base_color * (1 - material.metallic * (metal ? metal->at(place).b : 1));
         else if (emission)
-            result = emission->at(x, y);
+            result = emission->at(place);
         result.a = base_color.a < material.alpha_cutoff ? 0.0F : 1.0F;
         return result;
     };
     const bool as_in_source = factor.r == 1 && factor.g == 1 && factor.b == 1 && material.metallic == 0;
-    return fill_image(extended_size(view.wrap_u, reference.width), extended_size(view.wrap_v, reference.height),
-                      masked ? 4 : 3, layer == PaintLayer::emission || as_in_source ? 8 : 16, color);
+    return fill_image(oversampling * extended_size(view.wrap_u, reference.width),
+                      oversampling * extended_size(view.wrap_v, reference.height), masked ? 4 : 3,
+                      !is_albedo || as_in_source ? 8 : 16, color);
 }
 
 std::array<Imath::V2d, 3> TileLayout::corners(std::size_t triangle) const {
-    const auto column = static_cast<double>(triangle % static_cast<std::size_t>(columns));
-    const auto row = static_cast<double>(triangle / static_cast<std::size_t>(columns));
-    const V2d first(column * tile_size + 0.5, row * tile_size + 0.5);
+    const std::size_t column = triangle % static_cast<std::size_t>(columns);
+    const std::size_t row = triangle / static_cast<std::size_t>(columns);
+    const V2d first(static_cast<double>(column) * tile_size + 0.5, static_cast<double>(row) * tile_size + 0.5);
     const double length = tile_size - 1;
     const V2d size(width(), height());
     return {first / size, (first + V2d(length, 0)) / size, (first + V2d(0, length)) / size};
@@ -154,9 +166,12 @@ TileLayout layout_tiles(const Scene& scene, const Mesh& mesh) {
     constexpr double texel_limit = 1 << 24;
     constexpr double largest_tile = 2048;
     const Material& material = scene.materials[mesh.material];
-    double wanted = 8;
+    // The texels of a tile do not lie on those of the image: more of them, as long as they are few.
+    constexpr double oversampling = 8, free_size = 256;
+    double longest = 1;
     for (const auto& view : {material.base_color_texture, material.metallic_texture, material.emission_texture})
-        if (view) wanted = std::max(wanted, 1 + longest_edge(scene, mesh, *view));
+        if (view) longest = std::max(longest, longest_edge(scene, mesh, *view));
+    const double wanted = 1 + std::max(longest, std::min(oversampling * longest, free_size));
 
     const auto count = static_cast<double>(mesh.triangle_count());
     const double affordable = std::floor(std::sqrt(texel_limit / count));

@@ -157,6 +157,7 @@ void write_mesh2(PovText& text, const Scene& scene, const Mesh& mesh, const PovM
     if (style.paint->kind == PaintKind::per_vertex) texture_of_vertex = write_vertex_textures(text, scene, mesh);
     write_faces(text, mesh, texture_of_vertex);
     if (style.tiles) write_tile_faces(text, mesh);
+    // With a texture for each vertex this one never shows, but an interior texture asks for it.
     if (!style.texture.empty()) text.line("texture {{ {} }}", style.texture);
     if (!style.back_texture.empty()) text.line("interior_texture {{ {} }}", style.back_texture);
     text.line("}}");

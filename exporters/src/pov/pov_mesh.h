@@ -16,7 +16,7 @@ namespace vmap {
 struct PovMeshStyle {
     const Paint* paint = nullptr;
     std::optional<TileLayout> tiles;  ///< of a tiled paint
-    std::string texture;              ///< name of the declared texture; empty for per_vertex paint
+    std::string texture;              ///< name of the declared texture
     std::string back_texture;         ///< name of the declared texture of backs; empty: the same as in front
     bool shading_normals = false;
     std::optional<Imath::M44d> transform;  ///< applied to the vertices; empty: they stay in the mesh's own frame

@@ -156,9 +156,8 @@ private:
                     add_image(fmt::format("emission-{}.png", i), write_paint_image(i, PaintLayer::emission));
 
             text.line("// {}", header_text(material.name));
-            if (paint.kind != PaintKind::per_vertex)
-                text.line("#declare texture_{} = texture {{ {} }}", i,
-                          texture_body(albedo, material.emission, emission_image));
+            text.line("#declare texture_{} = texture {{ {} }}", i,
+                      texture_body(albedo, material.emission, emission_image));
             if (!material.double_sided)
                 text.line("#declare back_texture_{} = texture {{ {} }}", i,
                           back_texture_body(albedo, material.alpha_mode == AlphaMode::mask));
@@ -181,7 +180,7 @@ private:
         PovMeshStyle style;
         style.paint = &look.paint;
         style.tiles = look.tiles;
-        if (look.paint.kind != PaintKind::per_vertex) style.texture = fmt::format("texture_{}", index);
+        style.texture = fmt::format("texture_{}", index);
         if (!scene_.materials[look.paint.material].double_sided)
             style.back_texture = fmt::format("back_texture_{}", index);
         style.shading_normals = config_.shading_normals;

@@ -111,7 +111,7 @@ std::string plain_name(const std::string& name) {
 }
 
 std::string pov_command_name(const std::string& path) {
-    const std::string name = std::filesystem::path(path).filename().string();
+    std::string name = std::filesystem::path(path).filename().string();
     if (name == plain_name(name)) return name;
     std::string word = "'";
     for (const char c : printable(name)) word += c == '\'' ? std::string("'\\''") : std::string(1, c);

@@ -18,10 +18,10 @@ namespace vmap {
     return wrap == WrapMode::clamp_to_edge ? size + 2 : size;
 }
 
-/// The texel of the image that stands at a place of the extended image.
-[[nodiscard]] inline int source_texel(WrapMode wrap, int extended, int size) {
-    if (wrap == WrapMode::mirrored_repeat) return extended < size ? extended : 2 * size - 1 - extended;
-    return wrap == WrapMode::clamp_to_edge ? std::clamp(extended - 1, 0, size - 1) : extended;
+/// The texture coordinate, in [0, 1], of a place in the extended image, in its texels from its edge.
+[[nodiscard]] inline double source_coordinate(WrapMode wrap, double place, int size) {
+    if (wrap == WrapMode::mirrored_repeat) return std::min(place, 2 * size - place) / size;
+    return (wrap == WrapMode::clamp_to_edge ? std::clamp(place - 1, 0.0, 1.0 * size) : place) / size;
 }
 
 /// The texture coordinate in the extended image, both in [0, 1] across their image.
