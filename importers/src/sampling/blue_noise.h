@@ -15,8 +15,8 @@
 
 namespace vmap {
 
-/// Large connected parts get points of a blue-noise tile; parts that are too small for one are pieced together and get
-/// one point for each equal piece.
+/// Connected parts that a plane shows well get points of a blue-noise tile, in numbers by their areas; where such parts
+/// meet smoothly their points are evened out.
 ///
 /// - counts: points for each surface, indexed by LitTriangle::surface
 /// - spacing: mean distance of neighbouring points, world units

@@ -3,6 +3,8 @@
 
 #include "random_numbers.h"
 
+#include <Imath/ImathVec.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -12,70 +14,92 @@
 namespace vmap {
 namespace {
 
-struct Candidate {
-    float x, y;  ///< in cells of the tile
-};
+using Imath::V2f;
 
-/// Candidates on a torus, by cell.
-class Candidates {
+/// Places on a torus of side x side unit cells, sorted by cell.
+class TorusPoints {
 public:
-    Candidates(int side, int per_cell, std::uint64_t seed) : side_(side) {
-        for (int cell = 0; cell < side * side; ++cell) {
-            const int row = cell / side;
-            const int column = cell % side;
-            for (int k = 0; k < per_cell; ++k) {
-                const std::uint64_t hash = hash_bits(seed, static_cast<std::uint64_t>(per_cell) * cell + k);
-                places_.push_back(
-                    {static_cast<float>(column + upper_unit(hash)), static_cast<float>(row + lower_unit(hash))});
-            }
-        }
-        per_cell_ = per_cell;
+    TorusPoints(int side, const std::vector<V2f>& places)
+        : side_(side), first_(cells() + 1, 0), places_(places.size()) {
+        for (const V2f& place : places) ++first_[cell_of(place) + 1];
+        std::partial_sum(first_.begin(), first_.end(), first_.begin());
+        std::vector<std::uint32_t> next(first_.begin(), first_.end() - 1);
+        for (const V2f& place : places) places_[next[cell_of(place)]++] = place;
     }
 
     [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(places_.size()); }
-    [[nodiscard]] const Candidate& operator[](std::uint32_t i) const { return places_[i]; }
+    [[nodiscard]] int side() const { return side_; }
+    [[nodiscard]] const V2f& operator[](std::uint32_t i) const { return places_[i]; }
+    [[nodiscard]] const std::vector<std::uint32_t>& first_of_cells() const { return first_; }
 
-    /// Calls visit(other, squared distance) for every other candidate nearer than reach cells.
+    [[nodiscard]] std::uint32_t cell_of(const V2f& place) const {
+        return static_cast<std::uint32_t>(column(place.y) * side_ + column(place.x));
+    }
+
+    /// The same place in [0, side).
+    [[nodiscard]] V2f wrapped(V2f place) const {
+        const auto side = static_cast<float>(side_);
+        for (float* x : {&place.x, &place.y}) {
+            if (*x < 0) *x += side;
+            if (*x >= side) *x -= side;
+        }
+        return place;
+    }
+
+    /// Calls visit(other, difference to it, distance) for every other place nearer than reach.
     template <class Visit>
     void for_each_near(std::uint32_t i, float reach, const Visit& visit) const {
         const int steps = static_cast<int>(std::ceil(reach));
-        const auto cell = static_cast<int>(i) / per_cell_;
-        const auto half = static_cast<float>(side_) / 2;
+        const int x0 = column(places_[i].x);
+        const int y0 = column(places_[i].y);
+        const auto side = static_cast<float>(side_);
         for (int dy = -steps; dy <= steps; ++dy)
             for (int dx = -steps; dx <= steps; ++dx) {
-                const int x = (cell % side_ + dx + side_) % side_;
-                const int y = (cell / side_ + dy + side_) % side_;
-                const int first = (y * side_ + x) * per_cell_;
-                for (int k = first; k < first + per_cell_; ++k) {
-                    if (k == static_cast<int>(i)) continue;
-                    float ex = std::abs(places_[k].x - places_[i].x);
-                    float ey = std::abs(places_[k].y - places_[i].y);
-                    if (ex > half) ex = static_cast<float>(side_) - ex;
-                    if (ey > half) ey = static_cast<float>(side_) - ey;
-                    const float square = ex * ex + ey * ey;
-                    if (square < reach * reach) visit(static_cast<std::uint32_t>(k), square);
+                const int cell = (y0 + dy + side_) % side_ * side_ + (x0 + dx + side_) % side_;
+                for (std::uint32_t k = first_[cell]; k < first_[cell + 1]; ++k) {
+                    V2f difference = places_[k] - places_[i];
+                    for (float* x : {&difference.x, &difference.y}) {
+                        if (*x > side / 2) *x -= side;
+                        if (*x < -side / 2) *x += side;
+                    }
+                    const float square = difference.length2();
+                    if (k != i && square < reach * reach) visit(k, difference, std::sqrt(square));
                 }
             }
     }
 
 private:
+    [[nodiscard]] std::size_t cells() const { return static_cast<std::size_t>(side_) * side_; }
+    [[nodiscard]] int column(float x) const { return std::min(static_cast<int>(x), side_ - 1); }
+
     int side_;
-    int per_cell_ = 1;
-    std::vector<Candidate> places_;
+    std::vector<std::uint32_t> first_;
+    std::vector<V2f> places_;
 };
 
-/// A heap of candidates, the most crowded on top, in which a candidate's crowding can fall.
+std::vector<V2f> random_places(int side, int per_cell, std::uint64_t seed) {
+    std::vector<V2f> places;
+    for (int y = 0; y < side; ++y)
+        for (int x = 0; x < side; ++x)
+            for (int k = 0; k < per_cell; ++k) {
+                const std::uint64_t hash = hash_bits(seed, static_cast<std::uint64_t>(places.size()));
+                places.emplace_back(static_cast<float>(x + upper_unit(hash)), static_cast<float>(y + lower_unit(hash)));
+            }
+    return places;
+}
+
+/// A heap of all points, the most crowded on top, in which a point's crowding can fall.
 class CrowdingHeap {
 public:
-    CrowdingHeap(std::vector<float> crowding, const std::vector<std::uint32_t>& members)
-        : crowding_(std::move(crowding)), heap_(members), slot_(crowding_.size(), gone) {
-        for (std::uint32_t k = 0; k < heap_.size(); ++k) slot_[heap_[k]] = k;
+    explicit CrowdingHeap(std::vector<float> crowding)
+        : crowding_(std::move(crowding)), heap_(crowding_.size()), slot_(crowding_.size()) {
+        std::iota(heap_.begin(), heap_.end(), 0U);
+        std::iota(slot_.begin(), slot_.end(), 0U);
         for (auto k = static_cast<std::uint32_t>(heap_.size() / 2); k-- > 0;) sink(k);
     }
 
     [[nodiscard]] std::size_t size() const { return heap_.size(); }
     [[nodiscard]] bool contains(std::uint32_t i) const { return slot_[i] != gone; }
-    [[nodiscard]] const std::vector<std::uint32_t>& members() const { return heap_; }
 
     std::uint32_t pop() {
         const std::uint32_t top = heap_.front();
@@ -116,70 +140,91 @@ private:
     std::vector<std::uint32_t> slot_;
 };
 
-/// Takes the most crowded candidates away, one by one, until `target` are left; returns those taken, in that order.
-/// - members: left afterwards
-std::vector<std::uint32_t> eliminate(const Candidates& candidates, std::vector<std::uint32_t>& members,
-                                     std::size_t target, double cells_per_point) {
-    // Twice the radius of disks that would cover the tile in the densest packing.
+/// Takes the most crowded points away, one by one, until `target` are left; returns those taken, in that order.
+/// - cells_per_point: share of the torus that a point has when it counts
+std::vector<std::uint32_t> eliminate(const TorusPoints& points, std::size_t target, double cells_per_point) {
+    // Twice the radius of disks that would cover the torus in the densest packing.
     const auto reach = static_cast<float>(2 * std::sqrt(cells_per_point / (2 * std::numbers::sqrt3)));
-    const auto crowd = [reach](float square) {
-        const float closeness = 1 - std::sqrt(square) / reach;
-        const float power = closeness * closeness;
-        return power * power * power * power;
+    const auto crowd = [reach](float distance) {
+        const float closeness = 1 - distance / reach;
+        const float square = closeness * closeness;
+        return square * square * square * square;
     };
-    std::vector<bool> is_member(candidates.size(), false);
-    for (const std::uint32_t i : members) is_member[i] = true;
-    std::vector<float> crowding(candidates.size(), 0);
-    for (const std::uint32_t i : members)
-        candidates.for_each_near(i, reach, [&](std::uint32_t j, float square) {
-            if (is_member[j]) crowding[i] += crowd(square);
-        });
+    std::vector<float> crowding(points.size(), 0);
+    for (std::uint32_t i = 0; i < points.size(); ++i)
+        points.for_each_near(i, reach,
+                             [&](std::uint32_t, const V2f&, float distance) { crowding[i] += crowd(distance); });
 
-    CrowdingHeap heap(std::move(crowding), members);
+    CrowdingHeap heap(std::move(crowding));
     std::vector<std::uint32_t> taken;
     while (heap.size() > target) {
         const std::uint32_t i = heap.pop();
         taken.push_back(i);
-        candidates.for_each_near(i, reach, [&](std::uint32_t j, float square) {
-            if (heap.contains(j)) heap.lower(j, crowd(square));
+        points.for_each_near(i, reach, [&](std::uint32_t j, const V2f&, float distance) {
+            if (heap.contains(j)) heap.lower(j, crowd(distance));
         });
     }
-    members = heap.members();
     return taken;
+}
+
+std::vector<bool> left_by(const std::vector<std::uint32_t>& taken, std::size_t count) {
+    std::vector<bool> is_left(count, true);
+    for (const std::uint32_t i : taken) is_left[i] = false;
+    return is_left;
+}
+
+/// One point per cell of space, as evenly as elimination makes it.
+TorusPoints even_points(int side, std::uint64_t seed) {
+    constexpr int candidates_per_point = 3;  // more cost time and change nothing once the points are pushed apart
+    const TorusPoints candidates(side, random_places(side, candidates_per_point, seed));
+    const std::vector<bool> is_left =
+        left_by(eliminate(candidates, static_cast<std::size_t>(side) * side, 1), candidates.size());
+    std::vector<V2f> places;
+    for (std::uint32_t i = 0; i < candidates.size(); ++i)
+        if (is_left[i]) places.push_back(candidates[i]);
+    return {side, places};
+}
+
+/// Points nearer than this, in root of a cell, push each other away. The densest lattice has 1.07; a tile near it would
+/// be a crystal.
+constexpr float push_distance = 0.87F;
+
+TorusPoints pushed_apart(const TorusPoints& points) {
+    constexpr float step = 0.3F;
+    std::vector<V2f> places(points.size());
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+        V2f push(0, 0);
+        points.for_each_near(i, push_distance, [&](std::uint32_t, const V2f& difference, float distance) {
+            if (distance > 0) push -= difference * ((push_distance - distance) / distance);
+        });
+        places[i] = points.wrapped(points[i] + push * step);
+    }
+    return {points.side(), places};
 }
 
 }  // namespace
 
 BlueNoiseTile make_blue_noise_tile(int side, std::uint64_t seed) {
-    constexpr int candidates_per_cell = 5;
-    const Candidates candidates(side, candidates_per_cell, seed);
-    const std::size_t count = static_cast<std::size_t>(side) * side;
-    std::vector<std::uint32_t> members(candidates.size());
-    std::iota(members.begin(), members.end(), 0U);
-    eliminate(candidates, members, count, 1);
+    constexpr int pushes = 10;
+    TorusPoints points = even_points(side, seed);
+    for (int k = 0; k < pushes; ++k) points = pushed_apart(points);
 
     // Below two fifths of the points nobody asks for an order.
-    const std::size_t ordered = count * 2 / 5;
-    std::vector<std::uint32_t> left = members;
-    std::vector<std::uint32_t> order = eliminate(candidates, left, ordered, 2);
-    std::ranges::sort(left, {}, [seed](std::uint32_t i) { return hash_bits(seed + 1, i); });
-    order.insert(order.end(), left.begin(), left.end());
+    const std::uint32_t count = points.size();
+    const std::vector<std::uint32_t> taken = eliminate(points, count * 2 / 5, 1.5);
+    std::vector<float> ranks(count);
+    const std::vector<bool> is_left = left_by(taken, count);
+    for (std::uint32_t i = 0; i < count; ++i)
+        if (is_left[i]) ranks[i] = static_cast<float>(0.4 * upper_unit(hash_bits(seed + 1, i)));
+    for (std::uint32_t k = 0; k < taken.size(); ++k)
+        ranks[taken[k]] = static_cast<float>(count - 1 - k) / static_cast<float>(count);
 
-    std::vector<float> rank(candidates.size());
-    for (std::size_t k = 0; k < count; ++k)
-        rank[order[k]] = static_cast<float>(static_cast<double>(count - 1 - k) / static_cast<double>(count));
-
-    std::ranges::sort(members);  // candidates come cell by cell
-    BlueNoiseTile tile{.side = side, .first = std::vector<std::uint32_t>(count + 1, 0), .points = {}};
-    for (const std::uint32_t i : members) {
-        const std::uint32_t cell = i / candidates_per_cell;
-        const std::uint32_t row = cell / side;
-        const std::uint32_t column = cell % side;
-        ++tile.first[cell + 1];
-        tile.points.push_back(
-            {candidates[i].x - static_cast<float>(column), candidates[i].y - static_cast<float>(row), rank[i]});
+    BlueNoiseTile tile{.side = side, .first = points.first_of_cells(), .points = {}};
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const std::uint32_t cell = points.cell_of(points[i]);
+        const auto corner = V2f(static_cast<float>(cell % side), static_cast<float>(cell / side));
+        tile.points.push_back({points[i].x - corner.x, points[i].y - corner.y, ranks[i]});
     }
-    std::partial_sum(tile.first.begin(), tile.first.end(), tile.first.begin());
     return tile;
 }
 

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <numeric>
 #include <span>
 #include <utility>
@@ -19,12 +18,11 @@ namespace {
 using Imath::V3d;
 using Imath::V3f;
 
-constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+constexpr std::uint32_t none = no_neighbour;
 constexpr float flat_cosine = 0.99996F;  ///< half a degree
-constexpr float chart_cosine = 0.7F;     ///< a plane shows the steepest triangle at this share of its area
+constexpr float chart_cosine = 0.7F;     ///< between a chart and the smoothed normals of its parts
+constexpr float steepest_cosine = 0.4F;  ///< a plane shows the steepest triangle at this share of its area
 constexpr float smooth_cosine = 0.5F;    ///< sheets that meet at a sharper edge are sampled on their own
-
-using Neighbours = std::vector<std::array<std::uint32_t, 3>>;
 
 /// Edges as the lit side sees them, so that front and back of one face run opposite ways.
 std::vector<TriangleEdge> edges_of(const LitSurface& surface) {
@@ -37,7 +35,8 @@ std::vector<TriangleEdge> edges_of(const LitSurface& surface) {
         const bool is_mirrored_side = is_mirrored(surface.scene->instances[instance]) != triangle.is_back();
         if (is_mirrored_side) std::swap(numbers[1], numbers[2]);
         for (int k = 0; k < 3; ++k)
-            edges[3 * t + k] = triangle_edge(static_cast<std::uint32_t>(t), k, numbers[k], numbers[(k + 1) % 3]);
+            edges[3 * t + k] = triangle_edge(static_cast<std::uint32_t>(t), is_mirrored_side ? 2 - k : k, numbers[k],
+                                             numbers[(k + 1) % 3]);
     });
     tbb::parallel_sort(edges);
     return edges;
@@ -66,6 +65,27 @@ Neighbours find_neighbours(const LitSurface& surface) {
         }
     }
     return neighbours;
+}
+
+/// Normals averaged over a few triangles around where these are smaller than the points' shares: such bumps would tear
+/// charts to pieces.
+std::vector<V3f> smooth_normals(const LitSurface& surface, const Neighbours& neighbours, double spacing) {
+    constexpr int rounds = 4;
+    const auto is_small = [&](std::uint32_t t) { return surface.triangles[t].area < spacing * spacing; };
+    std::vector<V3f> normals(surface.triangles.size());
+    for (std::size_t t = 0; t < normals.size(); ++t) normals[t] = surface.triangles[t].normal;
+    std::vector<V3f> next = normals;
+    for (int round = 0; round < rounds; ++round) {
+        tbb::parallel_for(std::uint32_t{0}, static_cast<std::uint32_t>(normals.size()), [&](std::uint32_t t) {
+            if (!is_small(t)) return;
+            V3f sum = normals[t];
+            for (const std::uint32_t other : neighbours[t])
+                if (other != none) sum += normals[other];
+            next[t] = sum.normalized();
+        });
+        normals.swap(next);
+    }
+    return normals;
 }
 
 /// Numbers of things, largest area first.
@@ -116,10 +136,11 @@ FlatParts find_flat_parts(const LitSurface& surface, const Neighbours& neighbour
 
 }  // namespace
 
-Charts find_charts(const LitSurface& surface) {
+Charts find_charts(const LitSurface& surface, double spacing) {
     Charts result;
-    const Neighbours neighbours = find_neighbours(surface);
-    const FlatParts parts = find_flat_parts(surface, neighbours, result);
+    result.neighbours = find_neighbours(surface);
+    const FlatParts parts = find_flat_parts(surface, result.neighbours, result);
+    const std::vector<V3f> smooth = smooth_normals(surface, result.neighbours, spacing);
     result.chart_of.assign(surface.triangles.size(), none);
 
     std::vector<std::uint32_t> members;  // flat parts of the chart that grows
@@ -127,7 +148,9 @@ Charts find_charts(const LitSurface& surface) {
          by_area(result.flat_areas.size(), [&](std::uint32_t flat) { return result.flat_areas[flat]; })) {
         if (result.chart_of[parts.of(seed)[0]] != none) continue;
         const auto number = static_cast<std::uint32_t>(result.charts.size());
-        const V3f normal = surface.triangles[parts.of(seed)[0]].normal;
+        const std::uint32_t first = parts.of(seed)[0];
+        const V3f& own = surface.triangles[first].normal;
+        const V3f normal = own.dot(smooth[first]) >= chart_cosine ? smooth[first] : own;
         float min_cosine = 1;
         const auto take = [&](std::uint32_t flat) {
             members.push_back(flat);
@@ -136,15 +159,17 @@ Charts find_charts(const LitSurface& surface) {
                 min_cosine = std::min(min_cosine, surface.triangles[t].normal.dot(normal));
             }
         };
+        const auto fits = [&](std::uint32_t flat) {
+            const std::uint32_t t = parts.of(flat)[0];
+            return smooth[t].dot(normal) >= chart_cosine && surface.triangles[t].normal.dot(normal) >= steepest_cosine;
+        };
         members.clear();
         take(seed);
         for (std::size_t next = 0; next < members.size(); ++next)
             for (const std::uint32_t t : parts.of(members[next]))
-                for (const std::uint32_t other : neighbours[t]) {
-                    if (other == none || result.chart_of[other] != none) continue;
-                    const std::uint32_t flat = result.flat_of[other];
-                    if (surface.triangles[parts.of(flat)[0]].normal.dot(normal) >= chart_cosine) take(flat);
-                }
+                for (const std::uint32_t other : result.neighbours[t])
+                    if (other != none && result.chart_of[other] == none && fits(result.flat_of[other]))
+                        take(result.flat_of[other]);
         result.charts.push_back({.normal = V3d(normal), .min_cosine = min_cosine});
     }
     return result;

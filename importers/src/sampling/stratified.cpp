@@ -173,17 +173,20 @@ void move_off_cuts(const LitSurface& surface, const SurfaceShading& shading, std
     });
 }
 
+std::uint64_t place_on_curve(const LitSurface& surface, std::uint32_t triangle) {
+    const double scale = 0x1p20 / std::max(surface.extent, 1e-300);
+    const auto [a, b, c] = surface.corners(surface.triangles[triangle]);
+    const V3d middle = (a + b + c) * (scale / 3) + V3d(0x1p20);
+    std::uint64_t key = 0;
+    for (int axis = 0; axis < 3; ++axis)
+        key |= spread_bits(static_cast<std::uint64_t>(std::clamp(middle[axis], 0.0, 0x1p21 - 1))) << axis;
+    return key;
+}
+
 void sort_by_place(const LitSurface& surface, std::span<std::uint32_t> triangles) {
     std::vector<std::pair<std::uint64_t, std::uint32_t>> keyed(triangles.size());
-    const double scale = 0x1p20 / std::max(surface.extent, 1e-300);
-    tbb::parallel_for(std::size_t{0}, triangles.size(), [&](std::size_t i) {
-        const auto [a, b, c] = surface.corners(surface.triangles[triangles[i]]);
-        const V3d middle = (a + b + c) * (scale / 3) + V3d(0x1p20);
-        std::uint64_t key = 0;
-        for (int axis = 0; axis < 3; ++axis)
-            key |= spread_bits(static_cast<std::uint64_t>(std::clamp(middle[axis], 0.0, 0x1p21 - 1))) << axis;
-        keyed[i] = {key, triangles[i]};
-    });
+    tbb::parallel_for(std::size_t{0}, triangles.size(),
+                      [&](std::size_t i) { keyed[i] = {place_on_curve(surface, triangles[i]), triangles[i]}; });
     tbb::parallel_sort(keyed);
     for (std::size_t i = 0; i < triangles.size(); ++i) triangles[i] = keyed[i].second;
 }

@@ -34,7 +34,10 @@ void place_stratified(const LitSurface& surface, std::span<const std::uint32_t> 
 void move_off_cuts(const LitSurface& surface, const SurfaceShading& shading, std::uint64_t seed,
                    std::span<PlacedPoint> points);
 
-/// Sorts triangles along a curve through space, so that neighbours in the order are near each other.
+/// Where a triangle is on a curve through space.
+[[nodiscard]] std::uint64_t place_on_curve(const LitSurface& surface, std::uint32_t triangle);
+
+/// Sorts triangles along that curve, so that neighbours in the order are near each other.
 void sort_by_place(const LitSurface& surface, std::span<std::uint32_t> triangles);
 
 }  // namespace vmap

@@ -57,16 +57,17 @@ struct Job {
 
 /// How much denser than needed the tile has to be for a pool: by chance fewer points than expected fall inside.
 double margin_of(const Pool& pool, double spacing) {
+    constexpr double most = 1.4;  // where more is needed another place of the tile may do
     const auto points = static_cast<double>(pool.points);
     const double wanted = points * spacing * spacing / pool.area;
-    return std::max(wanted, 0.1) * (1.01 + 2.5 * std::pow(points, -0.75));
+    return std::min(wanted * (1.01 + 2.5 * std::pow(points, -0.75)), most);
 }
 
 class Tiler {
 public:
     Tiler(const LitSurface& surface, const Charts& charts, std::span<const std::uint32_t> triangles,
           std::span<const Pool> pools, const BlueNoiseTile& tile, const SurfaceShading& shading, double spacing,
-          std::uint64_t seed)
+          std::uint64_t seed, std::span<PlacedPoint> points)
         : surface_(surface),
           charts_(charts),
           triangles_(triangles),
@@ -75,16 +76,23 @@ public:
           shading_(shading),
           spacing_(spacing),
           seed_(seed),
-          result_(pools.size()),
-          is_open_(pools.size(), true),
+          points_(points),
+          state_(pools.size(), State::open),
           margins_(charts.charts.size(), 0) {
-        for (const Pool& pool : pools) {
+        std::size_t first = 0;
+        for (std::size_t p = 0; p < pools.size(); ++p) {
+            const Pool& pool = pools[p];
+            firsts_.push_back(first);
+            first += pool.points;
+            if (pool.points == 0) state_[p] = State::done;
+            if (is_alone(pool)) state_[p] = State::loose;
+            if (state_[p] != State::open) continue;
             double& margin = margins_[pool.chart];
             margin = std::max(margin, margin_of(pool, spacing));
         }
     }
 
-    /// Tries once all that is open; true when something stays open that may work on the next try.
+    /// Tries once all that is open; true when something stays open.
     bool try_once() {
         std::vector<Job> jobs = make_jobs();
         tbb::parallel_for(std::size_t{0}, jobs.size(), [&](std::size_t i) { fill(jobs[i]); });
@@ -101,14 +109,25 @@ public:
         return reopen_short_charts();
     }
 
-    [[nodiscard]] std::vector<std::vector<PlacedPoint>> take_result() { return std::move(result_); }
+    [[nodiscard]] std::vector<bool> loose() const {
+        std::vector<bool> result;
+        for (const State state : state_) result.push_back(state == State::loose);
+        return result;
+    }
 
 private:
+    enum class State : std::uint8_t { open, done, loose };
+
+    /// A single point on a small part may lie anywhere; the tile would seldom have one there.
+    [[nodiscard]] bool is_alone(const Pool& pool) const {
+        return pool.points == 1 && pool.area < 0.5 * spacing_ * spacing_;
+    }
+
     [[nodiscard]] std::vector<Job> make_jobs() const {
         constexpr double work = 20000;  // points of a job
         std::vector<Job> jobs;
         for (std::uint32_t p = 0; p < pools_.size(); ++p) {
-            if (!is_open_[p]) continue;
+            if (state_[p] != State::open) continue;
             Job job{.pool = p, .first = pools_[p].first, .found = {}};
             double expected = 0;
             for (std::size_t t = pools_[p].first; t < pools_[p].last; ++t) {
@@ -141,7 +160,7 @@ private:
         const std::uint32_t number = pools_[job.pool].chart;
         const Chart& chart = charts_.charts[number];
         const double cells_per_unit = std::sqrt(margins_[number] / chart.min_cosine) / spacing_;
-        const Frame frame(chart, cells_per_unit, tile_.side, hash_bits(seed_, number));
+        const Frame frame(chart, cells_per_unit, tile_.side, hash_bits(hash_bits(seed_, number), tries_));
         for (std::size_t t = job.first; t < job.last; ++t) lay(frame, chart, triangles_[t], job);
     }
 
@@ -191,15 +210,15 @@ private:
         std::vector<std::uint32_t> keys;
         for (const Job& job : jobs)
             for (const Candidate& candidate : job.found) keys.push_back(candidate.key);
-        if (keys.size() < wanted || wanted == 0) return;
+        if (keys.size() < wanted) return;
         std::ranges::nth_element(keys, keys.begin() + static_cast<std::ptrdiff_t>(wanted - 1));
         const std::uint32_t limit = keys[wanted - 1];
         auto ties = wanted - static_cast<std::size_t>(
                                  std::count_if(keys.begin(), keys.begin() + static_cast<std::ptrdiff_t>(wanted),
                                                [limit](std::uint32_t key) { return key < limit; }));
         keys = {};
-        std::vector<PlacedPoint>& points = result_[number];
-        points.reserve(wanted);
+        state_[number] = State::done;
+        PlacedPoint* next = &points_[firsts_[number]];
         for (Job& job : jobs) {
             for (const Candidate& candidate : job.found) {
                 if (candidate.key > limit) continue;
@@ -207,29 +226,31 @@ private:
                     ties = 0;
                     continue;
                 }
-                points.push_back(candidate.point);
+                *next++ = candidate.point;
             }
             job.found = {};
         }
     }
 
-    /// All pools of a chart share one density, so that their points keep their distance: one short pool reopens all.
+    /// All pools of a chart share one place and density of the tile, so that their points keep their distance: one
+    /// short pool reopens all.
     bool reopen_short_charts() {
-        constexpr double densest = 2;
+        constexpr int most_tries = 12;
+        constexpr double more = 1.05;
         std::vector<bool> is_short(charts_.charts.size(), false);
         for (std::size_t p = 0; p < pools_.size(); ++p)
-            if (is_open_[p] && result_[p].size() < pools_[p].points) is_short[pools_[p].chart] = true;
+            if (state_[p] == State::open) is_short[pools_[p].chart] = true;
+        const bool is_last = ++tries_ == most_tries;
         bool any = false;
         for (std::size_t p = 0; p < pools_.size(); ++p) {
-            const std::uint32_t chart = pools_[p].chart;
-            is_open_[p] = is_short[chart] && margins_[chart] * 1.2 < densest;
-            if (!is_open_[p]) continue;
-            result_[p] = {};
+            if (pools_[p].points == 0 || is_alone(pools_[p]) || !is_short[pools_[p].chart]) continue;
             any = true;
+            if (!is_last) state_[p] = State::open;
+            if (is_last && state_[p] == State::open) state_[p] = State::loose;
         }
         for (std::size_t chart = 0; chart < margins_.size(); ++chart)
-            if (is_short[chart]) margins_[chart] *= 1.2;
-        return any;
+            if (is_short[chart]) margins_[chart] *= more;
+        return any && !is_last;
     }
 
     const LitSurface& surface_;
@@ -240,21 +261,22 @@ private:
     const SurfaceShading& shading_;
     double spacing_;
     std::uint64_t seed_;
-    std::vector<std::vector<PlacedPoint>> result_;
-    std::vector<bool> is_open_;
+    std::span<PlacedPoint> points_;
+    std::vector<std::size_t> firsts_;  ///< point of each pool
+    std::vector<State> state_;         ///< of each pool
+    std::uint64_t tries_ = 0;
     std::vector<double> margins_;  ///< of each chart: density over what is needed where it is steepest
 };
 
 }  // namespace
 
-std::vector<std::vector<PlacedPoint>> place_tiled(const LitSurface& surface, const Charts& charts,
-                                                  std::span<const std::uint32_t> triangles, std::span<const Pool> pools,
-                                                  const BlueNoiseTile& tile, const SurfaceShading& shading,
-                                                  double spacing, std::uint64_t seed) {
-    Tiler tiler(surface, charts, triangles, pools, tile, shading, spacing, seed);
+std::vector<bool> place_tiled(const LitSurface& surface, const Charts& charts, std::span<const std::uint32_t> triangles,
+                              std::span<const Pool> pools, const BlueNoiseTile& tile, const SurfaceShading& shading,
+                              double spacing, std::uint64_t seed, std::span<PlacedPoint> points) {
+    Tiler tiler(surface, charts, triangles, pools, tile, shading, spacing, seed, points);
     while (tiler.try_once()) {
     }
-    return tiler.take_result();
+    return tiler.loose();
 }
 
 }  // namespace vmap

@@ -30,13 +30,12 @@ struct Pool {
 /// Lays points over pools, exactly as many as each asks for.
 ///
 /// - triangles: indices into the surface's, pool after pool
-/// - pools: those of one chart next to each other
 /// - spacing: mean distance of neighbouring points, world units
-/// - returns the points, pool after pool; none of a pool in which the tile does not find enough places
-[[nodiscard]] std::vector<std::vector<PlacedPoint>> place_tiled(const LitSurface& surface, const Charts& charts,
-                                                                std::span<const std::uint32_t> triangles,
-                                                                std::span<const Pool> pools, const BlueNoiseTile& tile,
-                                                                const SurfaceShading& shading, double spacing,
-                                                                std::uint64_t seed);
+/// - points: where they go, pool after pool; as many as the pools ask for
+/// - returns for each pool true when the tile does not find enough places in it; its points are left as they are
+[[nodiscard]] std::vector<bool> place_tiled(const LitSurface& surface, const Charts& charts,
+                                            std::span<const std::uint32_t> triangles, std::span<const Pool> pools,
+                                            const BlueNoiseTile& tile, const SurfaceShading& shading, double spacing,
+                                            std::uint64_t seed, std::span<PlacedPoint> points);
 
 }  // namespace vmap
