@@ -52,10 +52,10 @@ Pools make_pools(const LitSurface& surface, const Charts& charts, double spacing
     const double large = large_part * spacing * spacing;
     std::vector<PoolKey> keys(surface.triangles.size());
     tbb::parallel_for(std::size_t{0}, keys.size(), [&](std::size_t t) {
-        const std::uint32_t flat = charts.flat_of[t];
+        const std::uint32_t flat = charts.flats.of[t];
         keys[t] = {.surface = surface.triangles[t].surface,
                    .chart = charts.chart_of[t],
-                   .flat = charts.flat_areas[flat] >= large ? flat : std::numeric_limits<std::uint32_t>::max(),
+                   .flat = charts.flats.areas[flat] >= large ? flat : std::numeric_limits<std::uint32_t>::max(),
                    .triangle = static_cast<std::uint32_t>(t)};
     });
     tbb::parallel_sort(keys);

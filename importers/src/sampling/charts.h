@@ -4,34 +4,35 @@
 #pragma once
 
 #include "lit_surface.h"
+#include "triangle_neighbours.h"
 
 #include <Imath/ImathVec.h>
 
-#include <array>
 #include <cstdint>
 #include <vector>
 
 namespace vmap {
 
-/// For each triangle the one over the edge from its first corner to its second, second to third, third to first.
-using Neighbours = std::vector<std::array<std::uint32_t, 3>>;
-inline constexpr std::uint32_t no_neighbour = 0xFFFFFFFF;
-
 /// Connected triangles whose normals are near one direction.
 struct Chart {
-    Imath::V3d normal{0, 0, 1};  ///< of its largest flat part
-    double min_cosine = 1;       ///< between it and the normals of the triangles
+    Imath::V3d normal{0, 0, 1};  ///< of its first flat part
+    double min_cosine = 1;       ///< between it and the normals of the triangles; not below steepest_shown
 };
+
+/// A plane shows triangles at this share of their area or more; what is steeper counts as this steep.
+inline constexpr double steepest_shown = 0.45;
+
+/// Triangles that are steeper than this against their chart are too small to matter and get no points.
+inline constexpr double folded_cosine = 0.1;
 
 struct Charts {
     Neighbours neighbours;  ///< over smooth edges, on the same sheet
+    FlatParts flats;        ///< each lies in one chart
     std::vector<Chart> charts;
     std::vector<std::uint32_t> chart_of;  ///< of each triangle
-    std::vector<std::uint32_t> flat_of;   ///< flat part of each triangle: connected and coplanar; inside one chart
-    std::vector<double> flat_areas;       ///< of each flat part
 };
 
-/// - spacing: mean distance of the points to come, world units: bumps of triangles smaller than that do not matter
+/// - spacing: mean distance of the points to come, world units
 [[nodiscard]] Charts find_charts(const LitSurface& surface, double spacing);
 
 }  // namespace vmap

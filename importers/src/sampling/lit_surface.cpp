@@ -19,17 +19,25 @@ namespace {
 using Imath::V3d;
 using Imath::V3f;
 
-Imath::Box3d box_of(const Scene& scene) {
-    Imath::Box3d box;
-    for (const Instance& instance : scene.instances)
-        for (const V3f& position : scene.meshes[instance.mesh].positions)
-            box.extendBy(V3d(position) * instance.world_from_mesh);
-    return box;
-}
-
 /// Whole numbers, so that places that floats hold exactly stay exact.
 V3d rounded(const V3d& v) {
     return {std::round(v.x), std::round(v.y), std::round(v.z)};
+}
+
+/// Fills in the vertices and what comes from them: origin and extent.
+void place_vertices(LitSurface& surface) {
+    const Scene& scene = *surface.scene;
+    for (const Instance& instance : scene.instances) {
+        surface.first_vertices.push_back(surface.vertices.size());
+        for (const V3f& position : scene.meshes[instance.mesh].positions)
+            surface.vertices.push_back(V3d(position) * instance.world_from_mesh);
+    }
+    Imath::Box3d box;
+    for (const V3d& vertex : surface.vertices) box.extendBy(vertex);
+    if (box.isEmpty()) return;
+    surface.origin = rounded(box.center());
+    for (int axis = 0; axis < 3; ++axis) surface.extent = std::max(surface.extent, box.size()[axis] / 2 + 0.5);
+    for (V3d& vertex : surface.vertices) vertex -= surface.origin;
 }
 
 /// Points of the R2 sequence folded into a triangle: even at any count.
@@ -67,12 +75,6 @@ double kept_share(const LitSurface& surface, const LitTriangle& triangle, const 
 
 }  // namespace
 
-std::array<V3d, 3> LitSurface::corners(const LitTriangle& triangle) const {
-    auto result = world_triangle(*scene, triangle.instance, triangle.face - first_faces[triangle.instance]);
-    for (V3d& corner : result) corner -= origin;
-    return result;
-}
-
 SurfacePlace LitSurface::place(const LitTriangle& triangle, double u, double v, double width) const {
     return {.instance = triangle.instance,
             .triangle = triangle.face - first_faces[triangle.instance],
@@ -87,10 +89,7 @@ LitSurface find_lit_surface(const Scene& scene, SampleSides sides) {
     if (surface.first_faces.back() > std::numeric_limits<std::int32_t>::max())
         throw UnsupportedInput(scene.source + ": has " + std::to_string(surface.first_faces.back()) +
                                " triangles, expected fewer than 2^31");
-    const Imath::Box3d box = box_of(scene);
-    if (box.isEmpty()) return surface;
-    surface.origin = rounded(box.center());
-    for (int axis = 0; axis < 3; ++axis) surface.extent = std::max(surface.extent, box.size()[axis] / 2 + 0.5);
+    place_vertices(surface);
 
     std::vector<std::uint8_t> lit = find_lit_sides(scene, sides, surface.origin);
     std::vector<LitTriangle> fronts(lit.size());
@@ -126,12 +125,9 @@ LitSurface find_lit_surface(const Scene& scene, SampleSides sides) {
 }
 
 void cut_masked_areas(LitSurface& surface, const SurfaceShading& shading, double spacing, std::uint64_t seed) {
-    const auto is_masked = [&](const LitTriangle& triangle) {
-        return surface.scene->materials[triangle.material()].alpha_mode == AlphaMode::mask;
-    };
     tbb::parallel_for(std::size_t{0}, surface.triangles.size(), [&](std::size_t i) {
         LitTriangle& triangle = surface.triangles[i];
-        if (is_masked(triangle)) triangle.area *= kept_share(surface, triangle, shading, spacing, seed);
+        if (surface.is_masked(triangle)) triangle.area *= kept_share(surface, triangle, shading, spacing, seed);
     });
     std::erase_if(surface.triangles, [](const LitTriangle& triangle) { return !(triangle.area > 0); });
 }

@@ -31,14 +31,26 @@ struct LitTriangle {
 /// Keeps a reference to the scene, which must outlive it.
 struct LitSurface {
     const Scene* scene = nullptr;
-    std::vector<std::size_t> first_faces;  ///< of each instance, as first_faces() gives them
-    Imath::V3d origin{0, 0, 0};            ///< middle of the scene's box, whole numbers
+    std::vector<std::size_t> first_faces;     ///< of each instance, as first_faces() gives them
+    Imath::V3d origin{0, 0, 0};               ///< middle of the scene's box, whole numbers
+    std::vector<Imath::V3d> vertices;         ///< of all instances, relative to the origin
+    std::vector<std::size_t> first_vertices;  ///< of each instance
     std::vector<LitTriangle> triangles;
     std::size_t degenerate_faces = 0;  ///< faces that were left out because they have no area
     double extent = 0;                 ///< largest distance of a vertex from the origin along an axis
 
     /// Vertices relative to the origin, in the order of the mesh.
-    [[nodiscard]] std::array<Imath::V3d, 3> corners(const LitTriangle& triangle) const;
+    [[nodiscard]] std::array<Imath::V3d, 3> corners(const LitTriangle& triangle) const {
+        const Mesh& mesh = scene->meshes[scene->instances[triangle.instance].mesh];
+        const std::uint32_t* index =
+            &mesh.indices[3 * static_cast<std::size_t>(triangle.face - first_faces[triangle.instance])];
+        const Imath::V3d* first = &vertices[first_vertices[triangle.instance]];
+        return {first[index[0]], first[index[1]], first[index[2]]};
+    }
+
+    [[nodiscard]] bool is_masked(const LitTriangle& triangle) const {
+        return scene->materials[triangle.material()].alpha_mode == AlphaMode::mask;
+    }
 
     /// A place on a triangle for SurfaceShading.
     /// - u, v: weights of the triangle's second and third vertex

@@ -20,12 +20,13 @@ using Imath::V3f;
 
 // Lengths in units of the spacing.
 constexpr float seam_step = 0.5F;       ///< between samples of a seam
-constexpr float active_reach = 1;       ///< from a sample: points that move
-constexpr float list_reach = 1.3F;      ///< of the lists of neighbours
+constexpr float active_reach = 0.85F;   ///< from a sample: points that move
+constexpr float list_reach = 1.2F;      ///< of the lists of neighbours
 constexpr float most_moved = 0.4F;      ///< from where a point began
 constexpr float push_distance = 0.87F;  ///< points nearer than this push each other
-constexpr float near_cell = 2.5F;       ///< cells next to seams: hold all neighbours of points that move
-constexpr float push_step = 0.3F;
+constexpr float near_cell = 2.1F;       ///< cells next to seams: hold all neighbours of points that move
+constexpr float push_step = 0.35F;
+constexpr int rounds = 7;
 constexpr float same_side_cosine = 0.5F;  ///< points whose normals differ more do not see each other
 
 /// Places every half spacing along the edges where parts meet that were sampled on their own.
@@ -81,7 +82,6 @@ public:
         if (seams.empty()) return;
         collect(cells_near(seams));
         list_neighbours(seams);
-        const int rounds = active_.size() < 2'000'000 ? 10 : 5;
         for (int round = 0; round < rounds; ++round) push_once();
         while (undo_squeezed()) {
         }
@@ -131,7 +131,10 @@ private:
             });
         });
         for (std::uint32_t i = 0; i < places_.size(); ++i)
-            if (is_active[i] != 0) active_.push_back(i);
+            if (is_active[i] != 0) {
+                active_.push_back(i);
+                began_.push_back(places_[i]);
+            }
 
         blocks_.resize((active_.size() + block_size - 1) / block_size);
         tbb::parallel_for(std::size_t{0}, blocks_.size(), [&](std::size_t b) {
@@ -163,38 +166,44 @@ private:
 
     /// All points move at once, so that the order does not matter.
     void push_once() {
-        std::vector<PlacedPoint> moved(active_.size());
+        std::vector<Place> moved(active_.size());
         tbb::parallel_for(std::size_t{0}, blocks_.size(), [&](std::size_t b) {
             for_each_active(b, [&](std::size_t a, std::size_t number) {
                 const std::uint32_t i = active_[a];
                 V3f push(0);
                 for (const std::uint32_t j : neighbours(blocks_[b], number)) {
                     const V3f away = places_[i] - places_[j];
-                    const float distance = away.length();
-                    if (distance > 0 && distance < push_distance)
-                        push += away * ((push_distance - distance) / distance);
+                    const float square = away.length2();
+                    if (square >= push_distance * push_distance || square == 0) continue;
+                    push += away * (push_distance / std::sqrt(square) - 1);
                 }
-                moved[a] = stepped(i, push * push_step);
+                moved[a] = stepped(i, a, push * push_step);
             });
         });
         tbb::parallel_for(std::size_t{0}, active_.size(), [&](std::size_t a) { put(active_[a], moved[a]); });
     }
 
-    [[nodiscard]] PlacedPoint stepped(std::uint32_t i, const V3f& step) const {
-        if (step == V3f(0)) return now_[i];
-        const PlacedPoint next = walk(surface_, charts_.neighbours, parts_.pool_of, now_[i], V3d(step) * spacing_);
-        const V3d place = place_of(next);
-        if ((place - place_of(points_[near_[i]])).length2() > most_moved * most_moved) return now_[i];
-        const LitTriangle& triangle = surface_.triangles[next.triangle];
-        if (surface_.scene->materials[triangle.material()].alpha_mode == AlphaMode::mask &&
-            shading_.is_cut(surface_.place(triangle, next.u * PlacedPoint::unit, next.v * PlacedPoint::unit, 0)))
-            return now_[i];
-        return next;
+    struct Place {
+        PlacedPoint point;
+        V3f place{0, 0, 0};
+    };
+
+    [[nodiscard]] Place stepped(std::uint32_t i, std::size_t a, const V3f& step) const {
+        const Place here{now_[i], places_[i]};
+        if (step == V3f(0)) return here;
+        const WalkEnd end = walk(surface_, charts_.neighbours, parts_.pool_of, now_[i], V3d(step) * spacing_);
+        const V3f place(end.place / spacing_);
+        if ((place - began_[a]).length2() > most_moved * most_moved) return here;
+        const LitTriangle& triangle = surface_.triangles[end.point.triangle];
+        if (surface_.is_masked(triangle) && shading_.is_cut(surface_.place(triangle, end.point.u * PlacedPoint::unit,
+                                                                           end.point.v * PlacedPoint::unit, 0)))
+            return here;
+        return {end.point, place};
     }
 
-    void put(std::uint32_t i, const PlacedPoint& point) {
-        now_[i] = point;
-        places_[i] = V3f(place_of(point));
+    void put(std::uint32_t i, const Place& place) {
+        now_[i] = place.point;
+        places_[i] = place.place;
     }
 
     /// Puts points back that came too near another of the same flat part; true when there were any. It ends, because
@@ -210,7 +219,7 @@ private:
             for_each_active(b, [&](std::size_t a, std::size_t number) {
                 const std::uint32_t i = active_[a];
                 for (const std::uint32_t j : neighbours(blocks_[b], number)) {
-                    if (charts_.flat_of[now_[i].triangle] != charts_.flat_of[now_[j].triangle]) continue;
+                    if (charts_.flats.of[now_[i].triangle] != charts_.flats.of[now_[j].triangle]) continue;
                     if ((places_[i] - places_[j]).length() >= kept_distance) continue;
                     for (const std::uint32_t k : {i, j}) {
                         if (!has_moved(k)) continue;
@@ -223,7 +232,7 @@ private:
         if (!any) return false;
         tbb::parallel_for(std::size_t{0}, active_.size(), [&](std::size_t a) {
             const std::uint32_t i = active_[a];
-            if (is_squeezed[i] != 0) put(i, points_[near_[i]]);
+            if (is_squeezed[i] != 0) put(i, {points_[near_[i]], began_[a]});
         });
         return true;
     }
@@ -238,6 +247,7 @@ private:
     std::vector<PlacedPoint> now_;       ///< of the near points
     std::vector<V3f> places_;            ///< of the near points, in units of the spacing
     std::vector<std::uint32_t> active_;  ///< numbers among the near points: those that move
+    std::vector<V3f> began_;             ///< places of the points that move, before they did
     std::vector<Block> blocks_;
 };
 

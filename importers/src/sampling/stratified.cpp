@@ -164,7 +164,7 @@ void move_off_cuts(const LitSurface& surface, const SurfaceShading& shading, std
     constexpr std::uint64_t tries = 100'000;  // a triangle that has some area left was seen in far fewer looks
     tbb::parallel_for(std::size_t{0}, points.size(), [&](std::size_t i) {
         const LitTriangle& triangle = surface.triangles[points[i].triangle];
-        if (surface.scene->materials[triangle.material()].alpha_mode != AlphaMode::mask) return;
+        if (!surface.is_masked(triangle)) return;
         const auto is_cut = [&](const PlacedPoint& p) {
             return shading.is_cut(surface.place(triangle, p.u * PlacedPoint::unit, p.v * PlacedPoint::unit, 0));
         };

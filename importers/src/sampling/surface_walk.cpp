@@ -55,8 +55,8 @@ V3d clamped(const V3d& weights) {
 
 }  // namespace
 
-PlacedPoint walk(const LitSurface& surface, const Neighbours& neighbours, std::span<const std::uint32_t> pools,
-                 const PlacedPoint& from, const V3d& step) {
+WalkEnd walk(const LitSurface& surface, const Neighbours& neighbours, std::span<const std::uint32_t> pools,
+             const PlacedPoint& from, const V3d& step) {
     constexpr int most_edges = 64;
     std::uint32_t triangle = from.triangle;
     V3d weights = weights_of(V2d(from.u, from.v) * PlacedPoint::unit);
@@ -94,7 +94,7 @@ PlacedPoint walk(const LitSurface& surface, const Neighbours& neighbours, std::s
         if (!(kept > 0)) break;
         left *= length / kept;
     }
-    return placed_point(triangle, V2d(weights.y, weights.z));
+    return {placed_point(triangle, V2d(weights.y, weights.z)), frame.at(weights)};
 }
 
 }  // namespace vmap

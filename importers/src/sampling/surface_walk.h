@@ -17,12 +17,17 @@
 
 namespace vmap {
 
+struct WalkEnd {
+    PlacedPoint point;
+    Imath::V3d place;  ///< relative to the surface's origin
+};
+
 /// Moves a point along its triangle and straight on over edges into triangles of the same pool; from other edges it
 /// bounces off.
 ///
 /// - pools: of each triangle
 /// - step: world units; its part along the surface counts
-[[nodiscard]] PlacedPoint walk(const LitSurface& surface, const Neighbours& neighbours,
-                               std::span<const std::uint32_t> pools, const PlacedPoint& from, const Imath::V3d& step);
+[[nodiscard]] WalkEnd walk(const LitSurface& surface, const Neighbours& neighbours,
+                           std::span<const std::uint32_t> pools, const PlacedPoint& from, const Imath::V3d& step);
 
 }  // namespace vmap

@@ -168,8 +168,10 @@ private:
         const LitTriangle& triangle = surface_.triangles[number];
         const auto [a, b, c] = surface_.corners(triangle);
         const PlaneTriangle plane({frame(a), frame(b), frame(c)});
-        const bool is_masked = surface_.scene->materials[triangle.material()].alpha_mode == AlphaMode::mask;
+        const bool is_masked = surface_.is_masked(triangle);
         const double cosine = V3d(triangle.normal).dot(chart.normal);
+        if (cosine < folded_cosine) return;
+        const double shown = std::max(cosine, chart.min_cosine);
         const auto [low, high] = plane.rows();
         const std::int64_t begin = low + (high - low) * job.part / job.parts;
         const std::int64_t end = low + (high - low) * (job.part + 1) / job.parts;
@@ -183,7 +185,7 @@ private:
                     if (!plane.contains(place)) continue;
                     const V2d uv = plane.weights(place);
                     if (is_masked && shading_.is_cut(surface_.place(triangle, uv.x, uv.y, 0))) continue;
-                    job.found.push_back({placed_point(number, uv), key_of(point, row, column, cosine)});
+                    job.found.push_back({placed_point(number, uv), key_of(point, row, column, shown)});
                 }
             }
         }
@@ -196,11 +198,11 @@ private:
 
     /// Repeats of a tile's point have ranks next to each other, in an order without pattern.
     [[nodiscard]] std::uint32_t key_of(const BlueNoiseTile::Point& point, std::int64_t row, std::int64_t column,
-                                       double cosine) const {
+                                       double shown) const {
         const std::uint64_t hash =
             hash_bits(static_cast<std::uint64_t>(row) << 32 ^ static_cast<std::uint64_t>(column));
         const double rank = point.rank + upper_unit(hash) / (tile_.side * tile_.side);
-        return static_cast<std::uint32_t>(rank * cosine * (0x1p32 - 1));
+        return static_cast<std::uint32_t>(rank * shown * (0x1p32 - 1));
     }
 
     /// Keeps as many points of a pool as it asks for, the lowest ranks.
