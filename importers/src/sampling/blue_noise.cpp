@@ -88,6 +88,7 @@ void share_out(const LitSurface& surface, double spacing, std::size_t begin, std
     }
     std::ranges::sort(order);
     std::vector<double> areas;
+    areas.reserve(order.size());
     for (const auto& [key, p] : order) areas.push_back(pools.pools[p].area);
     const std::vector<std::size_t> counts = share_out_in_order(areas, count, offset);
 

@@ -222,8 +222,10 @@ BlueNoiseTile make_blue_noise_tile(int side, std::uint64_t seed) {
     BlueNoiseTile tile{.side = side, .first = points.first_of_cells(), .points = {}};
     for (std::uint32_t i = 0; i < count; ++i) {
         const std::uint32_t cell = points.cell_of(points[i]);
-        const auto corner = V2f(static_cast<float>(cell % side), static_cast<float>(cell / side));
-        tile.points.push_back({points[i].x - corner.x, points[i].y - corner.y, ranks[i]});
+        const std::uint32_t row = cell / side;
+        const std::uint32_t column = cell % side;
+        tile.points.push_back(
+            {points[i].x - static_cast<float>(column), points[i].y - static_cast<float>(row), ranks[i]});
     }
     return tile;
 }

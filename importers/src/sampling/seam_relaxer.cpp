@@ -189,15 +189,14 @@ private:
     };
 
     [[nodiscard]] Place stepped(std::uint32_t i, std::size_t a, const V3f& step) const {
-        const Place here{now_[i], places_[i]};
-        if (step == V3f(0)) return here;
+        if (step == V3f(0)) return {now_[i], places_[i]};
         const WalkEnd end = walk(surface_, charts_.neighbours, parts_.pool_of, now_[i], V3d(step) * spacing_);
         const V3f place(end.place / spacing_);
-        if ((place - began_[a]).length2() > most_moved * most_moved) return here;
+        if ((place - began_[a]).length2() > most_moved * most_moved) return {now_[i], places_[i]};
         const LitTriangle& triangle = surface_.triangles[end.point.triangle];
         if (surface_.is_masked(triangle) && shading_.is_cut(surface_.place(triangle, end.point.u * PlacedPoint::unit,
                                                                            end.point.v * PlacedPoint::unit, 0)))
-            return here;
+            return {now_[i], places_[i]};
         return {end.point, place};
     }
 

@@ -79,6 +79,7 @@ public:
           points_(points),
           state_(pools.size(), State::open),
           margins_(charts.charts.size(), 0) {
+        firsts_.reserve(pools.size());
         std::size_t first = 0;
         for (std::size_t p = 0; p < pools.size(); ++p) {
             const Pool& pool = pools[p];
@@ -111,6 +112,7 @@ public:
 
     [[nodiscard]] std::vector<bool> loose() const {
         std::vector<bool> result;
+        result.reserve(state_.size());
         for (const State state : state_) result.push_back(state == State::loose);
         return result;
     }
