@@ -20,7 +20,9 @@ public:
           shifted_(shift_ != Imath::V3d(0, 0, 0)) {}
 
     /// To be added to position(), in the axes of the file.
-    [[nodiscard]] Imath::V3d offset() const { return file_from_world(up_, world_offset_); }
+    [[nodiscard]] Imath::V3d offset() const {
+        return file_from_world(up_, world_offset_) + Imath::V3d(0, 0, 0);  // turns -0 into 0
+    }
 
     [[nodiscard]] Imath::V3f position(std::size_t i) const {
         const Imath::V3f& position = cloud_.positions[i];
