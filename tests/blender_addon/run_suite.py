@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs the add-on's suite in one Blender: run_suite.py BLENDER [pytest arguments].
 
-BLENDER is "debian" for the program `blender`, or the version of a bpy module, which is installed from the Python registry
-under build/blender when it is not there yet. Ends with 77, loudly, when that Blender cannot be had.
+BLENDER is "debian" for the program `blender`, "window" for the same with a window on a virtual display, or the version of
+a bpy module, which is installed from the Python registry under build/blender when it is not there yet. Ends with 77,
+loudly, when that Blender cannot be had.
 """
 
 import os
@@ -18,17 +19,42 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parents[2]
 INSIDE = ROOT / "tests" / "blender_addon" / "in_blender.py"
 SKIPPED = 77
-INSTALL_SECONDS, SUITE_SECONDS = 300, 240
+INSTALL_SECONDS, SUITE_SECONDS, WINDOW_SECONDS = 300, 240, 120
 
 
 def main():
     wanted, arguments = sys.argv[1], sys.argv[2:]
+    if wanted == "window":
+        return run_in_window()
     command = debian_command() if wanted == "debian" else module_command(wanted)
     if "--install-only" in arguments:
         return 0
     with tempfile.TemporaryDirectory(prefix="vmap-blender-") as resources:
-        environment = {**os.environ, "BLENDER_USER_RESOURCES": resources, "PYTHONDONTWRITEBYTECODE": "1"}
-        return run([*command, *arguments], SUITE_SECONDS, environment)
+        return run([*command, *arguments], SUITE_SECONDS, environment_for(resources))
+
+
+def environment_for(resources):
+    """Settings of no user; Debian's Python before any other, because Debian's Blender takes the first one's library."""
+    path = os.pathsep.join(["/usr/bin", os.environ.get("PATH", "")])
+    return {**os.environ, "PATH": path, "BLENDER_USER_RESOURCES": resources, "PYTHONDONTWRITEBYTECODE": "1"}
+
+
+def run_in_window():
+    blender, display = shutil.which("blender"), shutil.which("xvfb-run")
+    if not blender or not display:
+        skip("needs the programs blender and xvfb-run")
+    with tempfile.TemporaryDirectory(prefix="blender-window-") as folder:
+        command = [display, "-a", "-s", "-screen 0 1024x768x24", blender, "--factory-startup", "--enable-event-simulate"]
+        command += ["--window-geometry", "0", "0", "1024", "768", "--python-exit-code", "1"]
+        command += ["--python", ROOT / "tests" / "blender_addon" / "window" / "in_window.py", "--", folder]
+        log = Path(folder) / "log"
+        environment = {**environment_for(folder), "LIBGL_ALWAYS_SOFTWARE": "1", "TMPDIR": folder}
+        with open(log, "w") as output:
+            code = run(command, WINDOW_SECONDS, environment, output)
+        text = log.read_text(errors="replace")
+        print(text)
+        # Blender goes on after an error in a panel; it must not go unseen.
+        return code or int("Traceback" in text)
 
 
 def debian_command():
@@ -68,9 +94,11 @@ def python_for(version):
     return None
 
 
-def run(command, seconds, environment=None):
+def run(command, seconds, environment=None, output=None):
     """Exit status; what outlives its time is ended with all that it started."""
-    process = subprocess.Popen([str(c) for c in command], env=environment, start_new_session=True)
+    process = subprocess.Popen(
+        [str(c) for c in command], env=environment, stdout=output, stderr=output, start_new_session=True
+    )
     try:
         return process.wait(seconds)
     except subprocess.TimeoutExpired:
@@ -86,6 +114,6 @@ def skip(reason):
 
 
 if __name__ == "__main__":
-    if len(sys.argv) < 2 or not re.fullmatch(r"debian|\d+\.\d+\.\d+", sys.argv[1]):
+    if len(sys.argv) < 2 or not re.fullmatch(r"debian|window|\d+\.\d+\.\d+", sys.argv[1]):
         sys.exit(__doc__)
     sys.exit(main())

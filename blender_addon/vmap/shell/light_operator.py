@@ -43,9 +43,11 @@ class VMAP_OT_light(bpy.types.Operator, LightSettings):
         run = running()
         if event.type == "ESC" and run:
             run.cancel()
-        if event.type != "TIMER" and event.type != "ESC":
+        if event.type not in {"TIMER", "ESC"}:
             return {"PASS_THROUGH"}
         _redraw(context)
+        if run.cancelled:
+            return self._finish(context, run)  # takes half a second at most
         try:
             done = run.step()
         except BaseException as error:
@@ -54,8 +56,10 @@ class VMAP_OT_light(bpy.types.Operator, LightSettings):
 
     def execute(self, context):
         run = self._start(context)
-        if run is None:
-            return {"CANCELLED"}
+        return self._finish(context, run) if run else {"CANCELLED"}
+
+    def _finish(self, context, run):
+        """Does all that is left before it returns."""
         try:
             while not run.step():
                 time.sleep(PAUSE)
@@ -114,10 +118,13 @@ class VMAP_OT_cancel(bpy.types.Operator):
 
 
 def _redraw(context):
+    """The sidebars, where the panel is; the views themselves may be slow to draw."""
     for window in context.window_manager.windows:
         for area in window.screen.areas:
             if area.type == "VIEW_3D":
-                area.tag_redraw()
+                for region in area.regions:
+                    if region.type == "UI":
+                        region.tag_redraw()
 
 
 CLASSES = (VMAP_OT_light, VMAP_OT_cancel)

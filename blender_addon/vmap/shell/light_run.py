@@ -147,6 +147,8 @@ class LightRun:
                 job.start()
                 while not job.poll():
                     yield
+                if self.cancelled:
+                    raise AddonError("cancelled")
                 job.check()
                 self._note_report(read_report(os.path.join(job.folder, "report.json")))
                 for extension in extensions:
