@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the tests in Blender share: pictures by Cycles, volumes, small scenes."""
 
+import json
 import os
 import subprocess
 import textwrap
@@ -8,6 +9,7 @@ from pathlib import Path
 
 import bpy
 import numpy as np
+import pytest
 from vmap.shell.compat import node_tree_of
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -149,3 +151,21 @@ def add_light(scene, name, kind, energy, location=(0, 0, 0), rotation=(0, 0, 0),
     item.location, item.rotation_euler = location, rotation
     scene.collection.objects.link(item)
     return item
+
+
+def light_cornell(folder, *options):
+    """Folder with lit.ply, lit.glb, lit.vdb and lit.exr of the Cornell box in scenes/, and its glTF document."""
+    scene = ROOT / "scenes" / "cornell_box.gltf"
+    program = os.environ["VMAP_PROGRAM"]
+    if not os.access(program, os.X_OK):
+        pytest.skip(f"SKIPPED: no program at {program}")
+    outputs = [word for name in ("lit.ply", "lit.glb", "lit.vdb", "lit.exr") for word in ("-o", str(folder / name))]
+    command = [program, "light", str(scene), *outputs, "--points", "200000", *options]
+    subprocess.run(command, check=True, capture_output=True, timeout=120)
+    return folder, json.loads(scene.read_text())
+
+
+def cornell_camera(scene, document):
+    node = next(n for n in document["nodes"] if "camera" in n)
+    x, y, z = node["translation"]
+    return look(scene, (x, -z, y), (x, -z + 1, y), fov=document["cameras"][0]["perspective"]["yfov"])

@@ -5,6 +5,8 @@ import bpy
 
 HAS_FILE_HANDLERS = hasattr(bpy.types, "FileHandler")
 HAS_SAMPLE_GRID = hasattr(bpy.types, "GeometryNodeSampleGrid")
+# EEVEE draws point clouds since it was written anew; before (seen in 3.4) it leaves them out.
+EEVEE_DRAWS_POINTS = "surface_render_method" in bpy.types.Material.bl_rna.properties
 
 
 def node_tree_of(owner):

@@ -74,6 +74,7 @@ def _add_area(scene, name, lamp, matrix, color, power):
         return
     if getattr(lamp, "spread", math.pi) < math.pi * 0.999:
         scene.skip("spread of an area light (it shines to all sides)", name)
+    scene.skip("area light that casts no shadow itself (here it is a surface, which does)", name)
     outline = lamp_outline(lamp.shape, lamp.size, lamp.size_y)[::-1]  # it shines along -z
     corners = np.zeros((len(outline), 3), np.float32)
     corners[:, :2] = outline

@@ -11,6 +11,7 @@ from .light_operator import VMAP_OT_cancel, VMAP_OT_light, running
 from .point_material import EXPOSURE_NODE, exposure_socket
 from .point_object import MODIFIER_NAME
 from .scene_settings import shown_material
+from .show_meshes import VMAP_OT_show_on_meshes
 from .volume_object import MARK as VOLUME_MARK
 
 
@@ -71,6 +72,8 @@ class VMAP_PT_show(_Panel, bpy.types.Panel):
         layout.operator(VMAP_OT_import_volume.bl_idname, icon="IMPORT")
         if HAS_SAMPLE_GRID:
             layout.operator(VMAP_OT_light_mesh.bl_idname, icon="OUTLINER_OB_VOLUME")
+        overridden = context.view_layer.material_override is not None
+        layout.operator(VMAP_OT_show_on_meshes.bl_idname, icon="SHADING_RENDERED", depress=overridden)
         item = context.object
         if item is None:
             return

@@ -1,14 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Lit points as a Blender object: a PointCloud where Blender can make one, else a mesh that Geometry Nodes turn into one."""
+"""Lit points as a Blender object: a PointCloud where Blender can make one, else a mesh of vertices with Geometry Nodes that
+show them as points, or as small squares where EEVEE draws no points."""
 
 import bpy
 import numpy as np
 
-from .compat import enabled, fill, new_socket, point_clouds_resize, set_input
+from .compat import fill, point_clouds_resize, set_input
 from .point_material import point_material
+from .point_nodes import points_group
 
 MODIFIER_NAME = "vmap points"
-GROUP_NAMES = {"MESH": "vmap points of a mesh", "POINTCLOUD": "vmap point size"}
 # The radius in a file is that of the disc with the point's area. Shown at that size, evenly spread points leave holes:
 # a place can be 1.6 such radii away from the nearest point.
 SHOWN_SIZE = 1.65
@@ -46,8 +47,7 @@ def point_object(context, cloud, name, exposure=0.0, way="", as_mesh=False):
     material = point_material(name, has, exposure or cloud.exposure, way or _first_way(cloud))
     item.data.materials.append(material)
     modifier = item.modifiers.new(MODIFIER_NAME, "NODES")
-    name = GROUP_NAMES[item.type]
-    modifier.node_group = bpy.data.node_groups.get(name) or _points_group(name, item.type == "MESH")
+    modifier.node_group = points_group(item.type, "normals" in has)
     set_input(modifier, "Material", material)
     set_input(modifier, "Size", SHOWN_SIZE)
     item.location = cloud.offset
@@ -103,46 +103,3 @@ def _convert(context, item):
     for other in selected:
         other.select_set(True)
     context.view_layer.objects.active = active
-
-
-def _points_group(name, from_mesh):
-    """Node group: points of the size of their attribute "radius" times a factor, with a material."""
-    group = bpy.data.node_groups.new(name, "GeometryNodeTree")
-    new_socket(group, "Geometry", "NodeSocketGeometry")
-    new_socket(group, "Material", "NodeSocketMaterial")
-    new_socket(group, "Size", "NodeSocketFloat")
-    new_socket(group, "Geometry", "NodeSocketGeometry", is_output=True)
-    column = 0
-
-    def node(kind, row=0):
-        nonlocal column
-        made = group.nodes.new(kind)
-        made.location = (200 * column, -200 * row)
-        column += 1
-        return made
-
-    link = group.links.new
-    start = node("NodeGroupInput")
-    points = start.outputs["Geometry"]
-    if from_mesh:
-        named = node("GeometryNodeInputNamedAttribute", 1)
-        named.data_type = "FLOAT"
-        named.inputs["Name"].default_value = "radius"
-        to_points = node("GeometryNodeMeshToPoints")
-        link(points, to_points.inputs["Mesh"])
-        link(enabled(named.outputs, "Attribute"), to_points.inputs["Radius"])
-        points = to_points.outputs[0]
-    # Scaled in a step of its own: some versions let the mesh's attribute win over what the conversion is told.
-    size = node("ShaderNodeMath", 1)
-    size.operation = "MULTIPLY"
-    scaled, material, end = (
-        node(kind) for kind in ("GeometryNodeSetPointRadius", "GeometryNodeSetMaterial", "NodeGroupOutput")
-    )
-    link(node("GeometryNodeInputRadius", 2).outputs[0], size.inputs[0])
-    link(start.outputs["Size"], size.inputs[1])
-    link(points, scaled.inputs[0])
-    link(size.outputs[0], scaled.inputs["Radius"])
-    link(scaled.outputs[0], material.inputs["Geometry"])
-    link(start.outputs["Material"], material.inputs["Material"])
-    link(material.outputs[0], end.inputs["Geometry"])
-    return group

@@ -1,16 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Light this scene against Cycles' own bake of the same scene, and our pictures against those of the program."""
+"""Light this scene against Cycles' own bake of the same scene; and one scene in our three formats."""
 
-import json
 import math
-import os
 import subprocess
 import time
 
 import bpy
 import numpy as np
 import pytest
-from blender_helpers import ROOT, add_cube, add_light, add_plane, diffuse, look, node_tree_of, render, use_cycles
+from blender_helpers import add_cube, add_light, add_plane, diffuse, light_cornell, node_tree_of, use_cycles
 from mathutils import Matrix
 
 pytestmark = pytest.mark.usefixtures("program")
@@ -154,24 +152,7 @@ def test_light_this_scene_agrees_with_cycles_bake(room, empty_scene):
 
 @pytest.fixture(scope="module")
 def cornell(tmp_path_factory):
-    """Lit Cornell box: folder with lit.ply, lit.glb, lit.vdb, lit.exr (128 pixels), and its glTF document."""
-    folder = tmp_path_factory.mktemp("cornell")
-    scene = ROOT / "scenes" / "cornell_box.gltf"
-    outputs = [word for name in ("lit.ply", "lit.glb", "lit.vdb", "lit.exr") for word in ("-o", str(folder / name))]
-    program = os.environ["VMAP_PROGRAM"]
-    if not os.access(program, os.X_OK):
-        pytest.skip(f"SKIPPED: no program at {program}")
-    command = [program, "light", str(scene), *outputs, "--points", "200000", "--size", "128x128"]
-    subprocess.run(command, check=True, capture_output=True, timeout=120)
-    return folder, json.loads(scene.read_text())
-
-
-def cornell_camera(scene, document):
-    node = next(n for n in document["nodes"] if "camera" in n)
-    x, y, z = node["translation"]
-    camera = look(scene, (x, -z, y), (x, -z + 1, y), fov=document["cameras"][0]["perspective"]["yfov"])
-    return camera
-
+    return light_cornell(tmp_path_factory.mktemp("cornell"))
 
 
 def test_ply_gltf_and_vdb_of_one_scene_coincide(cornell):
@@ -205,18 +186,3 @@ def density_box(item, voxel):
     box = np.array(done.stdout.split(), float).reshape(2, 3)
     assert item.rotation_euler[:] == (0, 0, 0)
     return box + np.array([[-0.5], [0.5]]) * voxel
-
-
-def test_the_lit_cloud_looks_as_the_program_renders_it(cornell, empty_scene, tmp_path):
-    folder, document = cornell
-    bpy.ops.vmap.import_points(filepath=str(folder / "lit.ply"), exposure=1.0)
-    use_cycles(empty_scene, 16)
-    cornell_camera(empty_scene, document)
-    ours = render(empty_scene, tmp_path, 128)[:, :, :3]
-    image = bpy.data.images.load(str(folder / "lit.exr"))
-    theirs = np.array(image.pixels[:], np.float32).reshape(128, 128, -1)[::-1, :, :3]
-    seen = theirs.sum(axis=2) > 0
-    assert seen.mean() > 0.5
-    difference = np.abs(ours - theirs)[seen].mean(axis=1) / np.maximum(theirs[seen].mean(axis=1), 1e-6)
-    print(f"\nlit Cornell box: median difference {np.median(difference):.4f}, 90th percentile {np.quantile(difference, 0.9):.4f}")
-    assert np.median(difference) <= 0.02

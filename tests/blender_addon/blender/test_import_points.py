@@ -8,6 +8,8 @@ import pytest
 from blender_helpers import data_counts, look, render, use_cycles
 from sample_files import glb_bytes, grid_positions, our_ply, our_rows, ply_bytes, points_document
 from vmap.shell import point_material
+from vmap.shell.compat import EEVEE_DRAWS_POINTS
+from vmap.shell.point_nodes import SQUARE
 from vmap.shell.point_object import SHOWN_SIZE
 
 
@@ -46,10 +48,23 @@ def test_our_ply_keeps_every_value(write):
 def test_points_show_at_their_radius_times_the_size_that_leaves_no_holes(write):
     item = import_points(filepath=write("lit.ply", our_ply([[0, 0, 0], [1, 0, 0]], radius=0.25)))
     depsgraph = bpy.context.evaluated_depsgraph_get()
-    clouds = [i.object.data for i in depsgraph.object_instances if i.object.type == "POINTCLOUD"]
-    assert len(clouds) == 1
-    assert [p.radius for p in clouds[0].points] == pytest.approx([0.25 * SHOWN_SIZE] * 2)
-    assert clouds[0].materials[0].name.startswith(item.name)
+    shown = [i.object for i in depsgraph.object_instances if i.object.type == "POINTCLOUD"]
+    if EEVEE_DRAWS_POINTS:
+        assert len(shown) == 1
+        assert [p.radius for p in shown[0].data.points] == pytest.approx([0.25 * SHOWN_SIZE] * 2)
+        material = shown[0].data.materials[0]
+    else:  # squares
+        mesh = item.evaluated_get(depsgraph).data
+        assert [polygon.area for polygon in mesh.polygons] == pytest.approx([(2 * 0.25 * SHOWN_SIZE * SQUARE) ** 2] * 2)
+        material = mesh.materials[mesh.polygons[0].material_index]
+    assert material.name.startswith(item.name)
+
+
+def test_points_without_normals_show_too(write, tmp_path, empty_scene):
+    rows = np.zeros(1, [(n, "f4") for n in ("x", "y", "z", "radius")] + [(n, "u1") for n in ("red", "green", "blue")])
+    rows["radius"], rows["red"] = 1.0, 255
+    import_points(filepath=write("foreign.ply", ply_bytes(rows)))
+    np.testing.assert_allclose(rendered_point(empty_scene, tmp_path), [1, 0, 0], atol=1e-6)
 
 
 def test_double_offset_is_kept_and_places_the_object(write):

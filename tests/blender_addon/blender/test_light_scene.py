@@ -7,7 +7,7 @@ import os
 import bpy
 import numpy as np
 import pytest
-from blender_helpers import add_cube, add_light, add_plane, diffuse
+from blender_helpers import add_cube, add_light, add_plane, diffuse, look, render, use_cycles
 from vmap.shell.scene_reader import read_scene
 
 pytestmark = pytest.mark.usefixtures("program")
@@ -118,6 +118,21 @@ def test_a_cube_keeps_sharp_edges_at_its_corners(empty_scene):
     up = np.repeat([polygon.normal.z > 0.5 for polygon in cube.data.polygons], 4)
     np.testing.assert_allclose(found[up], 2.0, rtol=0.01)
     np.testing.assert_allclose(found[~up], 0, atol=1e-3)
+
+
+def test_the_light_on_meshes_can_be_seen_and_put_away(empty_scene, tmp_path):
+    with pytest.raises(RuntimeError, match="No mesh has the attribute"):
+        bpy.ops.vmap.show_on_meshes()
+    plane = add_plane(empty_scene, "floor", size=4.0, material=diffuse("grey", (0.5,) * 3))
+    add_light(empty_scene, "sun", "SUN", 2.0)
+    light(result={"ATTRIBUTE"}, points=5000)
+    assert bpy.ops.vmap.show_on_meshes() == {"FINISHED"}
+    use_cycles(empty_scene, 4)
+    look(empty_scene, (0, 0, 5), (0, 0, 0), ortho=2)
+    shown = render(empty_scene, tmp_path, 8)[:, :, :3]
+    np.testing.assert_allclose(shown, 2 / math.pi, rtol=0.01)
+    assert bpy.ops.vmap.show_on_meshes() == {"FINISHED"}
+    assert bpy.context.view_layer.material_override is None and plane.data.materials[0].name == "grey"
 
 
 def test_the_light_of_one_run_is_not_the_albedo_of_the_next(empty_scene, tmp_path):
