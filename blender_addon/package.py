@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Checks the add-on and packs it: package.py [--out FOLDER].
 
-Makes two zip files of one tree: the extension for Blender 4.2 and later, and the add-on for Blender 3.4 to 4.1. The same
-bytes on every run. Where a Blender with its extension tool is at hand (--blender, or a bpy module under build/blender) it
-validates the extension too.
+Makes two zip files of one tree: the extension for Blender 4.2 and later, and the add-on for Blender 3.4 to 4.1. The
+same bytes on every run. Where a Blender with its extension tool is at hand (--blender, or a bpy module under
+build/blender) it validates the extension too.
 """
 
 import argparse
@@ -122,7 +122,9 @@ def validate(out, blender=None):
     if blender:
         command = [blender, "--command", "extension", "validate", extension]
     else:
-        tools = sorted((ROOT / "build" / "blender").glob("bpy-*/lib/python*/site-packages/**/bl_pkg/cli/blender_ext.py"))
+        tools = sorted(
+            (ROOT / "build" / "blender").glob("bpy-*/lib/python*/site-packages/**/bl_pkg/cli/blender_ext.py")
+        )
         if not tools:
             print("not validated by Blender: no bpy module under build/blender, and no --blender", file=sys.stderr)
             return

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs the add-on's suite in one Blender: run_suite.py BLENDER [pytest arguments].
 
-BLENDER is "debian" for the program `blender`, "window" for the same with a window on a virtual display, or the version of
-a bpy module, which is installed from the Python registry under build/blender when it is not there yet. Ends with 77,
+BLENDER is "debian" for the program `blender`, "window" for the same with a window on a virtual display, or the version
+of a bpy module, which is installed from the Python registry under build/blender when it is not there yet. Ends with 77,
 loudly, when that Blender cannot be had.
 """
 
@@ -44,7 +44,9 @@ def run_in_window():
     if not blender or not display:
         skip("needs the programs blender and xvfb-run")
     with tempfile.TemporaryDirectory(prefix="blender-window-") as folder:
-        width, height = (1024, 1200) if "VMAP_PICTURES" in os.environ else (640, 480)  # drawn by software: small is quick
+        width, height = (
+            (1024, 1200) if "VMAP_PICTURES" in os.environ else (640, 480)
+        )  # drawn by software: small is quick
         command = [display, "-a", "-s", f"-screen 0 {width}x{height}x24", blender, "--factory-startup"]
         command += ["--enable-event-simulate", "--window-geometry", "0", "0", str(width), str(height)]
         command += ["--python-exit-code", "1"]
@@ -91,7 +93,11 @@ def python_for(version):
     candidates = [f"/usr/bin/python{version}", shutil.which(f"python{version}")]
     candidates += sorted(map(str, Path.home().glob(f".pyenv/versions/{version}.*/bin/python{version}")))
     for candidate in candidates:
-        if candidate and os.access(candidate, os.X_OK) and subprocess.run([candidate, "--version"], capture_output=True).returncode == 0:
+        if (
+            candidate
+            and os.access(candidate, os.X_OK)
+            and subprocess.run([candidate, "--version"], capture_output=True).returncode == 0
+        ):
             return candidate
     return None
 

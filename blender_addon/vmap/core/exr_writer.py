@@ -43,5 +43,7 @@ def _header(width, height):
         (b"screenWindowCenter", b"v2f", struct.pack("<2f", 0, 0)),
         (b"screenWindowWidth", b"float", struct.pack("<f", 1)),
     ]
-    body = b"".join(name + b"\0" + kind + b"\0" + struct.pack("<i", len(data)) + data for name, kind, data in attributes)
+    body = b"".join(
+        name + b"\0" + kind + b"\0" + struct.pack("<i", len(data)) + data for name, kind, data in attributes
+    )
     return struct.pack("<ii", MAGIC, VERSION) + body + b"\0"

@@ -91,7 +91,13 @@ class _Writer:
         component = UINT32 if array.dtype.kind == "u" else FLOAT
         view = self._view(np.ascontiguousarray(array).tobytes(), target)
         self.accessors.append(
-            {"bufferView": view, "componentType": component, "count": array.size // _WIDTH[kind], "type": kind, **bounds}
+            {
+                "bufferView": view,
+                "componentType": component,
+                "count": array.size // _WIDTH[kind],
+                "type": kind,
+                **bounds,
+            }
         )
         return len(self.accessors) - 1
 

@@ -160,7 +160,9 @@ class _Reader:
         values = np.ndarray((count, width), dtype, data, begin, (stride, dtype.itemsize))
         if dtype.kind == "f":
             return values.astype(np.float32)
-        return (values.astype(np.float32) / np.iinfo(dtype).max if accessor.get("normalized") else values).astype(np.float32)
+        return (values.astype(np.float32) / np.iinfo(dtype).max if accessor.get("normalized") else values).astype(
+            np.float32
+        )
 
     def _buffer(self, index):
         if index not in self.buffers:

@@ -83,7 +83,7 @@ def parse_header(path, data):
         if not words or words[0] == "obj_info":
             continue
         if words[0] == "comment":
-            comments.append(line.strip()[len("comment"):].strip())
+            comments.append(line.strip()[len("comment") :].strip())
         elif words[0] == "format":
             orders = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
             order = orders.get(words[1] if len(words) > 1 else "")

@@ -52,7 +52,9 @@ def check_program(path=""):
     answer = _ask(path, "--version").strip()
     match = re.fullmatch(r"(?:vmap )?(\d+)\.(\d+)\.(\d+)\S*", answer.splitlines()[0] if answer else "")
     if not match:
-        raise ProgramError(f"{printable(path)} is not the vmap program: it calls itself {printable(answer, 60)!r}. {HELP}")
+        raise ProgramError(
+            f"{printable(path)} is not the vmap program: it calls itself {printable(answer, 60)!r}. {HELP}"
+        )
     version = tuple(int(group) for group in match.groups())
     if version[:2] != VERSION[:2]:
         wanted = f"{VERSION[0]}.{VERSION[1]}"
@@ -79,5 +81,7 @@ def _ask(path, *arguments):
     text = done.stdout[:65536].decode("utf-8", "replace")
     if done.returncode:
         last = text.strip().splitlines()[-1:] or ["nothing"]
-        raise ProgramError(f"{printable(path)} {' '.join(arguments)} failed and said {printable(last[0], 100)!r}. {HELP}")
+        raise ProgramError(
+            f"{printable(path)} {' '.join(arguments)} failed and said {printable(last[0], 100)!r}. {HELP}"
+        )
     return text

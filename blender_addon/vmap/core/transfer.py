@@ -23,7 +23,9 @@ def fit_values(targets, target_normals, neighbors, distances, positions, normals
     result = np.zeros((len(targets), values.shape[1]), np.float32)
     for begin in range(0, len(targets), BATCH):
         rows = slice(begin, begin + BATCH)
-        result[rows] = _fit(targets[rows], target_normals[rows], neighbors[rows], distances[rows], positions, normals, values)
+        result[rows] = _fit(
+            targets[rows], target_normals[rows], neighbors[rows], distances[rows], positions, normals, values
+        )
     return result
 
 
@@ -49,7 +51,9 @@ def _fit(targets, target_normals, neighbors, distances, positions, normals, valu
     basis = np.stack([np.ones_like(u), u, v], axis=2)
     normal_matrix = np.einsum("mk,mki,mkj->mij", weights, basis, basis)
     right = np.einsum("mk,mki,mkc->mic", weights, basis, chosen)
-    damping = 1e-3 * total[:, None, None] * np.diag([0.0, 1.0, 1.0]) + np.where(lost, 1.0, 0.0)[:, None, None] * np.eye(3)
+    damping = 1e-3 * total[:, None, None] * np.diag([0.0, 1.0, 1.0]) + np.where(lost, 1.0, 0.0)[:, None, None] * np.eye(
+        3
+    )
     fitted = np.linalg.solve(normal_matrix + damping + 1e-12 * np.eye(3), right)[:, 0, :]
 
     # Never beyond what the points themselves say, and the mean where too few say anything.

@@ -45,7 +45,9 @@ def _targets(context, face_ranges, report):
         if item.type != "MESH":
             report(f"{item.name}: only meshes can keep light, this is a {item.type.lower()}")
         elif len(sharing) > 1:
-            report(f"{item.name}: its mesh is shared by {len(sharing)} objects; make it single-user (Object > Relations)")
+            report(
+                f"{item.name}: its mesh is shared by {len(sharing)} objects; make it single-user (Object > Relations)"
+            )
         elif item.data.library is not None:
             report(f"{item.name}: its mesh is linked from another file")
         else:

@@ -61,7 +61,9 @@ class LightRun:
         if not self.frames:
             raise AddonError("the last frame is before the first")
         if self.settings.use_frames and "ATTRIBUTE" in self.results:
-            raise AddonError("a mesh attribute holds the light of one frame; choose lit points or a volume for animation")
+            raise AddonError(
+                "a mesh attribute holds the light of one frame; choose lit points or a volume for animation"
+            )
         if self.settings.points and self.settings.spacing:
             raise AddonError("points and spacing exclude each other; set one of them to 0")
         self.directory = self._directory() if self.settings.use_frames or "VOLUME" in self.results else ""
@@ -159,17 +161,20 @@ class LightRun:
             finally:
                 self.job = None
 
+    def _warn(self, line):
+        """Once, however many frames say it."""
+        if ("WARNING", line) not in self.notes:
+            self.notes.append(("WARNING", line))
+
     def _note_what_is_lost(self, scene):
         for line in scene.not_carried():
-            if ("WARNING", f"Not carried: {line}") not in self.notes:
-                self.notes.append(("WARNING", f"Not carried: {line}"))
+            self._warn(f"Not carried: {line}")
 
     def _note_report(self, report):
         error = f", estimated error {100 * report.error_mean:.2g} %" if report.error_mean is not None else ""
         self.notes.append(("INFO", f"{report.points} points lit in {report.seconds:.2f} s{error}"))
         for warning in report.warnings:
-            if ("WARNING", warning) not in self.notes:
-                self.notes.append(("WARNING", warning))
+            self._warn(warning)
 
     def _bring_back(self):
         if self.directory:
@@ -191,8 +196,7 @@ class LightRun:
                 sequence_player.update(item, self.context.scene.frame_current)
             self._add(item, "CLOUD")
         if "ATTRIBUTE" in self.results:
-            note = lambda line: self.notes.append(("WARNING", line))  # noqa: E731
-            written = light_on_meshes(self.context, cloud, self.face_ranges, self.settings.domain, note)
+            written = light_on_meshes(self.context, cloud, self.face_ranges, self.settings.domain, self._warn)
             if not written:
                 raise AddonError("no mesh could keep the light: " + self.notes[-1][1])
             self.notes.append(("INFO", f'attribute "irradiance" on {len(written)} meshes'))

@@ -217,7 +217,7 @@ class _Walk:
         return color
 
     def color_of(self, node, stack, source):
-        """Color that a node sends out of a socket, or None when a constant, one texture and one attribute cannot say it."""
+        """Color that a node sends out of a socket; None when a constant, a texture and an attribute cannot say it."""
         if node.type in {"RGB", "VALUE"}:
             return Color(_rgb(source.default_value))
         if node.type == "TEX_IMAGE" and source.name == "Color":
@@ -279,7 +279,9 @@ class _Walk:
             if node.type == "REROUTE":
                 socket = node.inputs[0]
             elif node.type == "GROUP" and node.node_tree:
-                inside = next((n for n in node.node_tree.nodes if n.type == "GROUP_OUTPUT" and n.is_active_output), None)
+                inside = next(
+                    (n for n in node.node_tree.nodes if n.type == "GROUP_OUTPUT" and n.is_active_output), None
+                )
                 if inside is None:
                     return None, stack, socket
                 stack, socket = (*stack, node), inside.inputs[list(node.outputs).index(origin)]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Lit points as a Blender object: a PointCloud where Blender can make one, else a mesh of vertices with Geometry Nodes that
-show them as points, or as small squares where EEVEE draws no points."""
+"""Lit points as a Blender object: a PointCloud where Blender can make one, else a mesh of vertices with Geometry Nodes
+that show them as points, or as small squares where EEVEE draws no points."""
 
 import bpy
 import numpy as np
@@ -93,7 +93,9 @@ def _convert(context, item):
     context.view_layer.objects.active = item
     mesh = item.data
     try:
-        with context.temp_override(active_object=item, object=item, selected_objects=[item], selected_editable_objects=[item]):
+        with context.temp_override(
+            active_object=item, object=item, selected_objects=[item], selected_editable_objects=[item]
+        ):
             bpy.ops.object.convert(target="POINTCLOUD")
     except RuntimeError:
         pass  # it stays a mesh

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The scene as the render shows it: modifiers at render level, instances, what is hidden in renders left out.
 
-Only a render engine gets the render's own depsgraph. So a copy of the scene, which shares its objects, is rendered at one
-pixel by an engine that draws nothing and reads everything; the user's scene and its last render stay as they are.
+Only a render engine gets the render's own depsgraph. So a copy of the scene, which shares its objects, is rendered at a
+few pixels by an engine that draws nothing and reads everything; the user's scene and its last render stay as they are.
 """
 
 import math
 import os
+from contextlib import contextmanager
 
 import bpy
 import numpy as np
@@ -31,7 +32,7 @@ def read_scene(context, frame, folder, selected_only=False, with_sky=True):
     source = context.scene
     chosen = {item.name for item in context.view_layer.objects if item.select_get()} if selected_only else None
     scene = Scene()
-    with _scene_copy(source, context.view_layer, frame) as copy:
+    with _copy_of(source, context.view_layer, frame) as copy:
         _read_render(copy, lambda depsgraph: _read(depsgraph, scene, chosen, source))
     if not scene.triangle_count():
         wanted = "a selected object with a surface" if selected_only else "an object with a surface that renders"
@@ -40,32 +41,27 @@ def read_scene(context, frame, folder, selected_only=False, with_sky=True):
     return scene
 
 
-class _scene_copy:
-    """A scene that shares the objects of another, with a camera, ready to be rendered at one pixel."""
-
-    def __init__(self, source, view_layer, frame):
-        self.source, self.view_layer, self.frame = source, view_layer, frame
-
-    def __enter__(self):
-        self.copy = self.source.copy()
-        self.copy.frame_current = self.frame
-        render = self.copy.render
+@contextmanager
+def _copy_of(source, view_layer, frame):
+    """A scene that shares the objects of another, with a camera, ready to be rendered at a few pixels."""
+    copy, camera = source.copy(), None
+    try:
+        copy.frame_current = frame
+        render = copy.render
         render.resolution_x = render.resolution_y = 4
         render.resolution_percentage = 100
         render.use_compositing = render.use_sequencer = render.use_border = render.use_multiview = False
-        for layer in self.copy.view_layers:
-            layer.use = layer.name == self.view_layer.name
-        self.camera = None
-        if self.copy.camera is None:
-            self.camera = bpy.data.objects.new("vmap", bpy.data.cameras.new("vmap"))
-            self.copy.collection.objects.link(self.camera)
-            self.copy.camera = self.camera
-        return self.copy
-
-    def __exit__(self, *_):
-        bpy.data.scenes.remove(self.copy)
-        if self.camera:
-            bpy.data.cameras.remove(self.camera.data)
+        for layer in copy.view_layers:
+            layer.use = layer.name == view_layer.name
+        if copy.camera is None:
+            camera = bpy.data.objects.new("vmap", bpy.data.cameras.new("vmap"))
+            copy.collection.objects.link(camera)
+            copy.camera = camera
+        yield copy
+    finally:
+        bpy.data.scenes.remove(copy)
+        if camera:
+            bpy.data.cameras.remove(camera.data)
 
 
 def _read_render(scene, read):

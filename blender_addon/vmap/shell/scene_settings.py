@@ -28,9 +28,13 @@ class LightSettings:
         default="CORNER",
     )
     tolerance: bpy.props.FloatProperty(
-        name="Tolerance", description="Mean error asked for, as a part of the mean light", min=1e-4, max=1, default=0.01,
+        name="Tolerance",
+        description="Mean error asked for, as a part of the mean light",
+        min=1e-4,
+        max=1,
+        default=0.01,
         precision=4,
-    )  # fmt: skip
+    )
     points: bpy.props.IntProperty(
         name="Points", description="How many points; 0: the program chooses", min=0, default=0, soft_max=10_000_000
     )
@@ -51,7 +55,10 @@ class LightSettings:
         subtype="DIR_PATH",
     )
     time_limit: bpy.props.FloatProperty(
-        name="Time limit", description="Stop the program after so many seconds for one frame; 0: never", min=0, default=0
+        name="Time limit",
+        description="Stop the program after so many seconds for one frame; 0: never",
+        min=0,
+        default=0,
     )
 
 

@@ -26,7 +26,9 @@ class VMAP_OT_show_on_meshes(bpy.types.Operator):
             layer.material_override = None
             return {"FINISHED"}
         if not any(item.type == "MESH" and NAME in item.data.attributes for item in context.scene.objects):
-            self.report({"ERROR"}, f'No mesh has the attribute "{NAME}"; light the scene with the result "Mesh attribute"')
+            self.report(
+                {"ERROR"}, f'No mesh has the attribute "{NAME}"; light the scene with the result "Mesh attribute"'
+            )
             return {"CANCELLED"}
         material = bpy.data.materials.get(MATERIAL_NAME)
         layer.material_override = material or point_material(MATERIAL_NAME, {NAME}, 1.0, "IRRADIANCE")

@@ -53,7 +53,9 @@ def checked_grid(path):
     grid = file.grid(IRRADIANCE)
     names = ", ".join(f'"{g.name}"' for g in file.grids) or "none"
     if grid is None and any(g.holds_points for g in file.grids):
-        raise FileProblem(path, "holds OpenVDB points, which no version of Blender shows", "grids, or the points as PLY")
+        raise FileProblem(
+            path, "holds OpenVDB points, which no version of Blender shows", "grids, or the points as PLY"
+        )
     if grid is None or file.grid(DENSITY) is None:
         raise FileProblem(path, f"its grids are {names}", f'grids "{DENSITY}" and "{IRRADIANCE}" as vmap writes them')
     if "vec3s" not in grid.type:

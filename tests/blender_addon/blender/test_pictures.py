@@ -10,7 +10,17 @@ from pathlib import Path
 import bpy
 import numpy as np
 import pytest
-from blender_helpers import add_cube, add_light, add_plane, cornell_camera, diffuse, light_cornell, look, render, use_cycles
+from blender_helpers import (
+    add_cube,
+    add_light,
+    add_plane,
+    cornell_camera,
+    diffuse,
+    light_cornell,
+    look,
+    render,
+    use_cycles,
+)
 from mathutils.kdtree import KDTree
 from vmap.core.color import srgb_bytes_from_linear
 from vmap.core.png import png_bytes
@@ -126,4 +136,3 @@ def test_light_this_scene_beside_cycles(empty_scene, tmp_path):
     print(f"\nLight this scene beside Cycles: median difference {difference:.4f}")
     keep("blender-light.png", wanted, shown, exposure=1.0)
     assert difference < 0.04
-

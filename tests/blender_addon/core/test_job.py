@@ -25,19 +25,25 @@ def run(program, **options):
 
 
 def test_progress_is_read_line_by_line(fake_program):
-    body = REPORT + """
+    body = (
+        REPORT
+        + """
 progress('{"stage": "tree", "fraction": 0.5, "overall": 0.25, "seconds": 1}')
 progress('{"stage": "direct", "fraction": 1, "overall": 0.75, "seconds": 2}')
 """
+    )
     job = run(fake_program(body))
     assert (job.progress.stage, job.progress.fraction, job.progress.overall) == ("direct", 1, 0.75)
 
 
 def test_garbage_among_the_progress_is_passed_over(fake_program):
-    body = REPORT + r"""
+    body = (
+        REPORT
+        + r"""
 progress('{"stage": "tree", "fraction": 0.5}', 'garbage', '[1]', '{"stage": "x", "fraction": 9}', '{"stage": "x"}')
 progress('{"stage": "x", "fraction": "NaN"}', '[' * 5000, '\x1b[2J', '{"stage": "cut", "fraction"')
 """
+    )
     job = run(fake_program(body))
     assert (job.progress.stage, job.progress.overall) == ("tree", 0.5)
 
@@ -52,7 +58,7 @@ f.write('tion": 0.5}\\n'); f.close()
 
 
 def test_time_left_is_known_after_a_while(fake_program):
-    body = REPORT + "progress('{\"stage\": \"a\", \"fraction\": 0.5}'); time.sleep(0.2)"
+    body = REPORT + 'progress(\'{"stage": "a", "fraction": 0.5}\'); time.sleep(0.2)'
     with job_of(fake_program(body)).start() as job:
         assert job.seconds_left is None
         job.wait()
@@ -99,7 +105,9 @@ def test_a_flood_of_log_costs_neither_memory_nor_time(fake_program):
     assert sum(map(len, caught.value.lines)) < 100_000
 
 
-@pytest.mark.parametrize("body", ["time.sleep(60)", "signal.signal(signal.SIGTERM, signal.SIG_IGN); open('ready', 'w')\ntime.sleep(60)"])
+@pytest.mark.parametrize(
+    "body", ["time.sleep(60)", "signal.signal(signal.SIGTERM, signal.SIG_IGN); open('ready', 'w')\ntime.sleep(60)"]
+)
 def test_cancel_ends_the_program_within_a_second(fake_program, body):
     with job_of(fake_program(body)).start() as job:
         time.sleep(0.3)

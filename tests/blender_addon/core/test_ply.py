@@ -71,7 +71,9 @@ def test_doubles_far_from_zero_get_an_offset(write):
 
 @pytest.mark.parametrize("order", ["<", ">"])
 def test_elements_before_the_vertices_are_passed_over(write, order):
-    before = "element thing 2\nproperty list uchar int items\nproperty float weight\nelement other 1\nproperty double d\n"
+    before = (
+        "element thing 2\nproperty list uchar int items\nproperty float weight\nelement other 1\nproperty double d\n"
+    )
     integers = "<i4" if order == "<" else ">i4"
     data = b"\x02" + np.array([7, 8], integers).tobytes() + b"\0" * 4 + b"\0" + b"\0" * 4 + b"\0" * 8
     path = write("order.ply", ply_bytes(our_rows(POSITIONS), order, before=before, before_data=data))

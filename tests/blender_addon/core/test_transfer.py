@@ -39,7 +39,14 @@ def test_a_constant_stays_itself():
 def test_the_other_side_of_a_thin_wall_does_not_leak():
     positions, normals = sheet()
     both = np.concatenate([positions, positions])
-    result = fitted([[0.5, 0.5, 0]], [UP], both, np.concatenate([normals, -normals]), np.r_[np.ones((2000, 1)), np.zeros((2000, 1))], 32)
+    result = fitted(
+        [[0.5, 0.5, 0]],
+        [UP],
+        both,
+        np.concatenate([normals, -normals]),
+        np.r_[np.ones((2000, 1)), np.zeros((2000, 1))],
+        32,
+    )
     np.testing.assert_allclose(result, 1, rtol=1e-5)
 
 

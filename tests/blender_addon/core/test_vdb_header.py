@@ -21,7 +21,10 @@ def sample(tmp_path):
 
 def test_names_types_and_metadata(sample):
     file = read_vdb_header(str(sample))
-    assert [(g.name, g.type) for g in file.grids] == [("density", "Tree_float_5_4_3"), ("irradiance", "Tree_vec3s_5_4_3")]
+    assert [(g.name, g.type) for g in file.grids] == [
+        ("density", "Tree_float_5_4_3"),
+        ("irradiance", "Tree_vec3s_5_4_3"),
+    ]
     assert file.metadata == {"source": "room.glb", "frame": 7, "fine": True}
     assert file.grid("irradiance").metadata["up"] == "z"
     assert file.grid("irradiance").metadata["exposure"] == 0.5

@@ -68,7 +68,10 @@ def test_emission_is_factor_times_strength(tmp_path):
 
 def test_lights_and_cameras(tmp_path):
     scene = scene_of()
-    scene.lights = [SceneLight("spot", (1, 1, 1), 7.5, np.eye(4), (0.3, 0.5)), SceneLight("directional", (1, 0, 0), 2, np.eye(4))]
+    scene.lights = [
+        SceneLight("spot", (1, 1, 1), 7.5, np.eye(4), (0.3, 0.5)),
+        SceneLight("directional", (1, 0, 0), 2, np.eye(4)),
+    ]
     scene.camera = SceneCamera(np.eye(4), 0.7, aspect=1.5)
     document, _ = written(tmp_path, scene)
     spot, sun = document["extensions"]["KHR_lights_punctual"]["lights"]

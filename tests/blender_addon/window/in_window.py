@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What only a Blender with a window does: panels are drawn, the operator runs beside the user, Esc stops it.
 
-Run by run_suite.py under a virtual display; a timer plays the steps one after the other. Arguments after --: a folder for
-temporary files and pictures.
+Run by run_suite.py under a virtual display; a timer plays the steps one after the other. Argument after --: a folder
+for temporary files.
 """
 
 import math
@@ -22,7 +22,7 @@ ROOT = HERE.parents[1]
 FOLDER = Path(sys.argv[sys.argv.index("--") + 1])
 sys.path[:0] = [str(ROOT / "blender_addon"), str(HERE)]
 
-from sample_files import our_ply  # noqa: E402
+from sample_files import our_ply
 
 HEIGHT_OF_TRANSFORM_PANEL = 410
 PROGRAM = """#!/usr/bin/python3
@@ -82,7 +82,7 @@ def steps():
     seconds = time.monotonic() - begin
     assert seconds < 1 or "VMAP_PICTURES" in os.environ, seconds
     assert process.poll() is not None
-    assert not [p for p in Path(tempfile.gettempdir()).glob("vmap-*")]
+    assert not list(Path(tempfile.gettempdir()).glob("vmap-*"))
     print(f"ok: Esc ended the program in {seconds:.2f} s")
 
     use_program(seconds=0.3)
