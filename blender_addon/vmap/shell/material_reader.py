@@ -166,6 +166,8 @@ class _Walk:
         transmission = inputs.get("Transmission Weight") or inputs.get("Transmission")
         if metallic > 0:
             self.skip("metallic surface (its share counts as black)")
+        elif self.specular(inputs):
+            self.skip("specular reflection (only the diffuse part of a Principled shader counts)")
         if transmission and (transmission.is_linked or transmission.default_value > 0):
             self.skip("transmission (counts as diffuse)")
         alpha = inputs["Alpha"]
@@ -178,6 +180,11 @@ class _Walk:
         if strength > 0:
             glow = inputs.get("Emission Color") or inputs.get("Emission")
             self.mix(surface, "emission", self.color(glow, stack), weight * strength)
+
+    @staticmethod
+    def specular(inputs):
+        socket = inputs.get("Specular IOR Level") or inputs.get("Specular")
+        return socket is None or socket.is_linked or socket.default_value > 0
 
     def mix(self, surface, part, color, weight):
         """Adds weight * color to the part; only one of the summands can keep a texture."""

@@ -103,6 +103,9 @@ def _read(depsgraph, scene, chosen, source):
         if not np.isfinite(matrix).all():
             scene.skip("object whose place is not finite", item.name)
         elif item.type == "LIGHT":
+            linking = getattr(item, "light_linking", None)
+            if linking and (linking.receiver_collection or linking.blocker_collection):
+                scene.skip("light linking (the light falls on everything)", item.name)
             add_lamp(scene, item.name, item.data, matrix)
         elif item.type == "MESH":
             _add_mesh(scene, instance, item, matrix, materials, meshes, chosen)

@@ -7,7 +7,7 @@ import os
 import bpy
 import numpy as np
 import pytest
-from blender_helpers import add_cube, add_light, add_plane, data_counts, diffuse, look
+from blender_helpers import add_cube, add_light, add_mesh, add_plane, data_counts, diffuse, look
 from mathutils import Matrix
 from vmap.core.errors import AddonError
 from vmap.shell import world_reader
@@ -107,6 +107,37 @@ def test_geometry_nodes_instances_are_there(empty_scene):
     triangles = world_triangles(scene)
     np.testing.assert_allclose(triangles.reshape(-1, 3).max(axis=0), [2.25, 2.25, 0.25])
     assert areas(triangles).sum() == pytest.approx(4 * 6 * 0.25)
+
+
+def test_instances_of_geometry_without_an_object_keep_their_shapes(empty_scene):
+    """A small cube and a large one, made by nodes, at each of two vertices."""
+    group = bpy.data.node_groups.new("shapes", "GeometryNodeTree")
+    new_socket(group, "Geometry", "NodeSocketGeometry")
+    new_socket(group, "Geometry", "NodeSocketGeometry", is_output=True)
+    start, join, end = (group.nodes.new(k) for k in ("NodeGroupInput", "GeometryNodeJoinGeometry", "NodeGroupOutput"))
+    for size in (0.5, 1.0):
+        cube, points = (group.nodes.new(k) for k in ("GeometryNodeMeshCube", "GeometryNodeInstanceOnPoints"))
+        cube.inputs["Size"].default_value = (size, size, size)
+        group.links.new(start.outputs[0], points.inputs["Points"])
+        group.links.new(cube.outputs["Mesh"], points.inputs["Instance"])
+        group.links.new(points.outputs[0], join.inputs[0])
+    group.links.new(join.outputs[0], end.inputs[0])
+    item = add_mesh(empty_scene, "points", [(0, 0, 0), (5, 0, 0)], [])
+    item.modifiers.new("nodes", "NODES").node_group = group
+    scene = read()
+    assert areas(world_triangles(scene)).sum() == pytest.approx(2 * 6 * (0.25 + 1.0))
+
+
+@pytest.mark.parametrize("make", ["metaball", "surface"])
+def test_metaballs_and_surfaces_are_their_meshes(empty_scene, make):
+    if make == "surface":
+        bpy.ops.surface.primitive_nurbs_surface_sphere_add(radius=1.0)
+    else:
+        bpy.ops.object.metaball_add(type="BALL", radius=1.0)
+    scene = read()
+    total = areas(world_triangles(scene)).sum()
+    assert 1 < total < 4 * math.pi * 1.1
+    assert not scene.not_carried()
 
 
 def test_curves_and_texts_are_their_meshes_once(empty_scene):
@@ -216,6 +247,14 @@ def test_what_a_light_cannot_carry_is_named(empty_scene):
     text = "\n".join(read().not_carried())
     for name in ("big", "wide", "soft", "narrow", "dark"):
         assert name in text
+
+
+@pytest.mark.skipif("light_linking" not in bpy.types.Object.bl_rna.properties, reason="this Blender has no light linking")
+def test_light_linking_is_named(empty_scene):
+    add_plane(empty_scene, "plane")
+    lamp = add_light(empty_scene, "lamp", "POINT", 1)
+    lamp.light_linking.receiver_collection = bpy.data.collections.new("linked")
+    assert "light linking" in read().not_carried()[0]
 
 
 def test_lights_inside_collection_instances_shine_at_each_place(empty_scene):
@@ -365,6 +404,13 @@ def test_what_a_material_cannot_carry_is_named(empty_scene):
     scene, _ = read_material(empty_scene, material)
     text = "\n".join(scene.not_carried())
     assert "Noise Texture" in text and "metallic" in text and "principled" in text
+
+
+def test_specular_reflection_is_named_unless_there_is_none(empty_scene):
+    material, _, shader = principled()
+    assert "specular" in read_material(empty_scene, material)[0].not_carried()[0]
+    (shader.inputs.get("Specular IOR Level") or shader.inputs["Specular"]).default_value = 0
+    assert not read().not_carried()
 
 
 def test_several_materials_are_several_parts_in_the_order_of_slots(empty_scene):
