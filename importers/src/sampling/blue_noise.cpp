@@ -117,8 +117,8 @@ void share_out(const LitSurface& surface, double spacing, std::size_t begin, std
 
 /// Side of a tile that is not repeated too often and takes little of the time.
 int tile_side(std::size_t points) {
-    int side = 8;
-    while (side < 128 && 128 * static_cast<std::size_t>(side) * side < points) side *= 2;
+    int side = 32;
+    while (side < 128 && 16 * static_cast<std::size_t>(side) * side < points) side *= 2;
     return side;
 }
 
@@ -139,11 +139,9 @@ Placement place_blue_noise(const LitSurface& surface, const SurfaceShading& shad
     Placement placement;
     placement.points.resize(std::accumulate(counts.begin(), counts.end(), std::size_t{0}));
     const BlueNoiseTile tile = make_blue_noise_tile(tile_side(placement.points.size()), hash_bits(seed));
-    report_progress(progress, "sample", 0.3);
     SeamParts parts;
-    parts.is_loose =
-        place_tiled(surface, charts, pools.triangles, pools.pools, tile, shading, spacing, seed, placement.points);
-    report_progress(progress, "sample", 0.5);
+    parts.is_loose = place_tiled(surface, charts, pools.triangles, pools.pools, tile, shading, spacing, seed, progress,
+                                 placement.points);
 
     parts.pool_of.resize(surface.triangles.size());
     std::size_t first = 0;
@@ -159,7 +157,7 @@ Placement place_blue_noise(const LitSurface& surface, const SurfaceShading& shad
         first += pool.points;
         placement.areas.insert(placement.areas.end(), pool.points, static_cast<float>(pools.point_areas[p]));
     }
-    relax_seams(surface, shading, charts, parts, spacing, placement.points);
+    relax_seams(surface, shading, charts, parts, spacing, progress, placement.points);
     return placement;
 }
 

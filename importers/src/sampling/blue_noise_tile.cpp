@@ -4,6 +4,7 @@
 #include "random_numbers.h"
 
 #include <Imath/ImathVec.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -77,72 +78,105 @@ private:
     std::vector<V2f> places_;
 };
 
-std::vector<V2f> random_places(int side, int per_cell, std::uint64_t seed) {
+/// For each cell a place at random in the square of two by two cells about it: one in each cell would leave a trace of
+/// the cells once the points are pushed apart.
+TorusPoints jittered_points(int side, std::uint64_t seed) {
+    const auto wrap = [side](double x) { return static_cast<float>(x < side ? x : x - side); };
     std::vector<V2f> places;
+    places.reserve(static_cast<std::size_t>(side) * side);
     for (int y = 0; y < side; ++y)
-        for (int x = 0; x < side; ++x)
-            for (int k = 0; k < per_cell; ++k) {
-                const std::uint64_t hash = hash_bits(seed, static_cast<std::uint64_t>(places.size()));
-                places.emplace_back(static_cast<float>(x + upper_unit(hash)), static_cast<float>(y + lower_unit(hash)));
-            }
-    return places;
+        for (int x = 0; x < side; ++x) {
+            const std::uint64_t hash = hash_bits(seed, places.size());
+            places.emplace_back(wrap(x + 2 * upper_unit(hash)), wrap(y + 2 * lower_unit(hash)));
+        }
+    return {side, places};
 }
 
-/// A heap of all points, the most crowded on top, in which a point's crowding can fall.
-class CrowdingHeap {
+/// Points that are nearer to each other than `distance`, in root of a cell, push each other away.
+TorusPoints pushed_apart(const TorusPoints& points, float distance, float step) {
+    std::vector<V2f> places(points.size());
+    tbb::parallel_for(std::uint32_t{0}, points.size(), [&](std::uint32_t i) {
+        V2f push(0, 0);
+        points.for_each_near(i, distance, [&](std::uint32_t, const V2f& difference, float here) {
+            if (here > 0) push -= difference * ((distance - here) / here);
+        });
+        places[i] = points.wrapped(points[i] + push * step);
+    });
+    return {points.side(), places};
+}
+
+/// Spread evenly: first as many everywhere, then at some distance from each other. The densest lattice has 1.07; points
+/// pushed near that would be a crystal.
+TorusPoints even_points(int side, std::uint64_t seed) {
+    TorusPoints points = jittered_points(side, seed);
+    for (int k = 0; k < 8; ++k) points = pushed_apart(points, 1.5F, 0.1F);
+    for (int k = 0; k < 20; ++k) points = pushed_apart(points, 0.87F, 0.3F);
+    return points;
+}
+
+/// How crowded points are, and for each block of the torus a heap with its most crowded point on top.
+class CrowdingHeaps {
 public:
-    explicit CrowdingHeap(std::vector<float> crowding)
-        : crowding_(std::move(crowding)), heap_(crowding_.size()), slot_(crowding_.size()) {
-        std::iota(heap_.begin(), heap_.end(), 0U);
-        std::iota(slot_.begin(), slot_.end(), 0U);
-        for (auto k = static_cast<std::uint32_t>(heap_.size() / 2); k-- > 0;) sink(k);
+    CrowdingHeaps(std::vector<float> crowding, std::vector<std::uint32_t> block_of, std::uint32_t blocks)
+        : crowding_(std::move(crowding)), block_of_(std::move(block_of)), heaps_(blocks), slot_(crowding_.size()) {
+        for (std::uint32_t i = 0; i < crowding_.size(); ++i) {
+            slot_[i] = static_cast<std::uint32_t>(heap_of(i).size());
+            heap_of(i).push_back(i);
+        }
+        for (std::vector<std::uint32_t>& heap : heaps_)
+            for (auto slot = static_cast<std::uint32_t>(heap.size() / 2); slot-- > 0;) sink(heap, slot);
     }
 
-    [[nodiscard]] std::size_t size() const { return heap_.size(); }
     [[nodiscard]] bool contains(std::uint32_t i) const { return slot_[i] != gone; }
+    [[nodiscard]] bool is_empty(std::uint32_t block) const { return heaps_[block].empty(); }
 
-    std::uint32_t pop() {
-        const std::uint32_t top = heap_.front();
-        put(0, heap_.back());
-        heap_.pop_back();
+    std::uint32_t pop(std::uint32_t block) {
+        std::vector<std::uint32_t>& heap = heaps_[block];
+        const std::uint32_t top = heap.front();
+        put(heap, 0, heap.back());
+        heap.pop_back();
         slot_[top] = gone;
-        if (!heap_.empty()) sink(0);
+        if (!heap.empty()) sink(heap, 0);
         return top;
     }
 
     void lower(std::uint32_t i, float by) {
         crowding_[i] -= by;
-        sink(slot_[i]);
+        sink(heap_of(i), slot_[i]);
     }
 
 private:
     static constexpr std::uint32_t gone = 0xFFFFFFFF;
 
-    void put(std::uint32_t slot, std::uint32_t i) {
-        heap_[slot] = i;
+    std::vector<std::uint32_t>& heap_of(std::uint32_t i) { return heaps_[block_of_[i]]; }
+    void put(std::vector<std::uint32_t>& heap, std::uint32_t slot, std::uint32_t i) {
+        heap[slot] = i;
         slot_[i] = slot;
     }
-    void sink(std::uint32_t slot) {
-        const std::uint32_t i = heap_[slot];
+    void sink(std::vector<std::uint32_t>& heap, std::uint32_t slot) {
+        const std::uint32_t i = heap[slot];
         while (true) {
             std::uint32_t child = 2 * slot + 1;
-            if (child >= heap_.size()) break;
-            if (child + 1 < heap_.size() && crowding_[heap_[child + 1]] > crowding_[heap_[child]]) ++child;
-            if (crowding_[heap_[child]] <= crowding_[i]) break;
-            put(slot, heap_[child]);
+            if (child >= heap.size()) break;
+            if (child + 1 < heap.size() && crowding_[heap[child + 1]] > crowding_[heap[child]]) ++child;
+            if (crowding_[heap[child]] <= crowding_[i]) break;
+            put(heap, slot, heap[child]);
             slot = child;
         }
-        put(slot, i);
+        put(heap, slot, i);
     }
 
     std::vector<float> crowding_;
-    std::vector<std::uint32_t> heap_;
-    std::vector<std::uint32_t> slot_;
+    std::vector<std::uint32_t> block_of_;  ///< of each point
+    std::vector<std::vector<std::uint32_t>> heaps_;
+    std::vector<std::uint32_t> slot_;  ///< of each point in its heap
 };
 
-/// Takes the most crowded points away, one by one, until `target` are left; returns those taken, in that order.
-/// - cells_per_point: share of the torus that a point has when it counts
-std::vector<std::uint32_t> eliminate(const TorusPoints& points, std::size_t target, double cells_per_point) {
+/// Takes the most crowded points away, from one block of the torus after the other, so that those that are left are as
+/// many everywhere, until `target` are left; returns those taken, in that order.
+std::vector<std::uint32_t> eliminate(const TorusPoints& points, std::size_t target, std::uint64_t seed) {
+    constexpr int block_side = 8;
+    constexpr double cells_per_point = 1.5;  // share of the torus for which points are to be spread best
     // Twice the radius of disks that would cover the torus in the densest packing.
     const auto reach = static_cast<float>(2 * std::sqrt(cells_per_point / (2 * std::numbers::sqrt3)));
     const auto crowd = [reach](float distance) {
@@ -150,72 +184,44 @@ std::vector<std::uint32_t> eliminate(const TorusPoints& points, std::size_t targ
         const float square = closeness * closeness;
         return square * square * square * square;
     };
+    const int blocks_across = points.side() / block_side;
     std::vector<float> crowding(points.size(), 0);
-    for (std::uint32_t i = 0; i < points.size(); ++i)
+    std::vector<std::uint32_t> block_of(points.size());
+    tbb::parallel_for(std::uint32_t{0}, points.size(), [&](std::uint32_t i) {
+        block_of[i] =
+            static_cast<int>(points[i].y / block_side) * blocks_across + static_cast<int>(points[i].x / block_side);
         points.for_each_near(i, reach,
                              [&](std::uint32_t, const V2f&, float distance) { crowding[i] += crowd(distance); });
+    });
 
-    CrowdingHeap heap(std::move(crowding));
+    std::vector<std::uint32_t> order(static_cast<std::size_t>(blocks_across) * blocks_across);
+    std::iota(order.begin(), order.end(), 0U);
+    CrowdingHeaps heaps(std::move(crowding), std::move(block_of), static_cast<std::uint32_t>(order.size()));
     std::vector<std::uint32_t> taken;
-    while (heap.size() > target) {
-        const std::uint32_t i = heap.pop();
-        taken.push_back(i);
-        points.for_each_near(i, reach, [&](std::uint32_t j, const V2f&, float distance) {
-            if (heap.contains(j)) heap.lower(j, crowd(distance));
-        });
+    for (std::uint64_t round = 0; points.size() - taken.size() > target; ++round) {
+        std::ranges::sort(order, {}, [&](std::uint32_t block) { return hash_bits(hash_bits(seed, round), block); });
+        for (const std::uint32_t block : order) {
+            if (heaps.is_empty(block)) continue;
+            const std::uint32_t i = heaps.pop(block);
+            taken.push_back(i);
+            points.for_each_near(i, reach, [&](std::uint32_t j, const V2f&, float distance) {
+                if (heaps.contains(j)) heaps.lower(j, crowd(distance));
+            });
+        }
     }
     return taken;
-}
-
-std::vector<bool> left_by(const std::vector<std::uint32_t>& taken, std::size_t count) {
-    std::vector<bool> is_left(count, true);
-    for (const std::uint32_t i : taken) is_left[i] = false;
-    return is_left;
-}
-
-/// One point per cell of space, as evenly as elimination makes it.
-TorusPoints even_points(int side, std::uint64_t seed) {
-    constexpr int candidates_per_point = 3;  // more cost time and change nothing once the points are pushed apart
-    const TorusPoints candidates(side, random_places(side, candidates_per_point, seed));
-    const std::vector<bool> is_left =
-        left_by(eliminate(candidates, static_cast<std::size_t>(side) * side, 1), candidates.size());
-    std::vector<V2f> places;
-    for (std::uint32_t i = 0; i < candidates.size(); ++i)
-        if (is_left[i]) places.push_back(candidates[i]);
-    return {side, places};
-}
-
-/// Points nearer than this, in root of a cell, push each other away. The densest lattice has 1.07; a tile near it would
-/// be a crystal.
-constexpr float push_distance = 0.87F;
-
-TorusPoints pushed_apart(const TorusPoints& points) {
-    constexpr float step = 0.3F;
-    std::vector<V2f> places(points.size());
-    for (std::uint32_t i = 0; i < points.size(); ++i) {
-        V2f push(0, 0);
-        points.for_each_near(i, push_distance, [&](std::uint32_t, const V2f& difference, float distance) {
-            if (distance > 0) push -= difference * ((push_distance - distance) / distance);
-        });
-        places[i] = points.wrapped(points[i] + push * step);
-    }
-    return {points.side(), places};
 }
 
 }  // namespace
 
 BlueNoiseTile make_blue_noise_tile(int side, std::uint64_t seed) {
-    constexpr int pushes = 10;
-    TorusPoints points = even_points(side, seed);
-    for (int k = 0; k < pushes; ++k) points = pushed_apart(points);
+    const TorusPoints points = even_points(side, seed);
 
     // Below two fifths of the points nobody asks for an order.
     const std::uint32_t count = points.size();
-    const std::vector<std::uint32_t> taken = eliminate(points, count * 2 / 5, 1.5);
+    const std::vector<std::uint32_t> taken = eliminate(points, count * 2 / 5, seed);
     std::vector<float> ranks(count);
-    const std::vector<bool> is_left = left_by(taken, count);
-    for (std::uint32_t i = 0; i < count; ++i)
-        if (is_left[i]) ranks[i] = static_cast<float>(0.4 * upper_unit(hash_bits(seed + 1, i)));
+    for (std::uint32_t i = 0; i < count; ++i) ranks[i] = static_cast<float>(0.4 * upper_unit(hash_bits(seed + 1, i)));
     for (std::uint32_t k = 0; k < taken.size(); ++k)
         ranks[taken[k]] = static_cast<float>(count - 1 - k) / static_cast<float>(count);
 

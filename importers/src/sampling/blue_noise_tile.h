@@ -4,7 +4,7 @@
 /// are evenly spread too.
 ///
 /// This work is based on:
-///   C. Yuksel, "Sample elimination for generating Poisson disk sample sets", Eurographics 2015.
+///   C. Yuksel, "Sample elimination for generating Poisson disk sample sets", Eurographics 2015 (the ranks).
 #pragma once
 
 #include <cstdint>
@@ -24,7 +24,7 @@ struct BlueNoiseTile {
     std::vector<Point> points;         ///< side * side
 };
 
-/// - side: cells along each side, at least 8
+/// - side: cells along each side, a multiple of 8
 [[nodiscard]] BlueNoiseTile make_blue_noise_tile(int side, std::uint64_t seed);
 
 }  // namespace vmap

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "finish_points.h"
 
+#include "stage_progress.h"
+
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
@@ -95,7 +97,7 @@ private:
 }  // namespace
 
 PointCloud finish_points(const LitSurface& surface, const SurfaceShading& shading, Placement placement, double spacing,
-                         SampleNormals normals, std::vector<std::string>& warnings) {
+                         SampleNormals normals, const ProgressCallback& progress, std::vector<std::string>& warnings) {
     const std::size_t count = placement.points.size();
     PointCloud cloud;
     cloud.origin = origin_of(surface, spacing);
@@ -110,11 +112,13 @@ PointCloud finish_points(const LitSurface& surface, const SurfaceShading& shadin
         }))
         cloud.emission.resize(count);
 
+    StageProgress stage(progress, 0.7, 1, count);
     std::atomic<std::size_t> clamped = 0;
     tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 4096), [&](const auto& range) {
         Finisher finisher(surface, shading, spacing, normals, cloud);
         for (std::size_t i = range.begin(); i < range.end(); ++i) finisher.finish(i, placement.points[i]);
         clamped += finisher.clamped();
+        stage.advance(range.size());
     });
     if (clamped > 0) warnings.push_back("albedo above 1 clamped at " + std::to_string(clamped) + " points");
     return cloud;

@@ -8,6 +8,7 @@
 
 #include <vmap/importers/sample_surface.h>
 #include <vmap/point_cloud.h>
+#include <vmap/progress.h>
 #include <vmap/surface_shading.h>
 
 #include <string>
@@ -19,6 +20,7 @@ namespace vmap {
 /// - spacing: mean distance of neighbouring points, world units: textures are averaged over a square of it
 /// - warnings: gets a line when albedo had to be clamped
 [[nodiscard]] PointCloud finish_points(const LitSurface& surface, const SurfaceShading& shading, Placement placement,
-                                       double spacing, SampleNormals normals, std::vector<std::string>& warnings);
+                                       double spacing, SampleNormals normals, const ProgressCallback& progress,
+                                       std::vector<std::string>& warnings);
 
 }  // namespace vmap

@@ -36,8 +36,9 @@ void place_vertices(LitSurface& surface) {
     for (const V3d& vertex : surface.vertices) box.extendBy(vertex);
     if (box.isEmpty()) return;
     surface.origin = rounded(box.center());
-    for (int axis = 0; axis < 3; ++axis) surface.extent = std::max(surface.extent, box.size()[axis] / 2 + 0.5);
     for (V3d& vertex : surface.vertices) vertex -= surface.origin;
+    for (const V3d& corner : {box.min - surface.origin, box.max - surface.origin})
+        for (int axis = 0; axis < 3; ++axis) surface.extent = std::max(surface.extent, std::abs(corner[axis]));
 }
 
 /// Points of the R2 sequence folded into a triangle: even at any count.

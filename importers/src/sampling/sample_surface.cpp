@@ -10,6 +10,8 @@
 #include <vmap/error.h>
 #include <vmap/surface_shading.h>
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <limits>
 
@@ -23,7 +25,7 @@ void check(const SampleConfig& config) {
     if (config.points && *config.points > std::numeric_limits<std::uint32_t>::max())
         throw UsageError(std::to_string(*config.points) + " points asked for, expected fewer than 2^32");
     if (config.spacing && !(*config.spacing > 0 && std::isfinite(*config.spacing)))
-        throw UsageError("spacing is " + std::to_string(*config.spacing) + ", expected more than 0");
+        throw UsageError("spacing is " + fmt::format("{:g}", *config.spacing) + ", expected more than 0");
 }
 
 double area_of(const LitSurface& surface) {
@@ -36,7 +38,7 @@ std::size_t number_of_points(const SampleConfig& config, double area) {
     if (!config.spacing) return config.points.value_or(SampleConfig::default_points);
     const double count = std::round(area / (*config.spacing * *config.spacing));
     if (!(count <= std::numeric_limits<std::uint32_t>::max()))
-        throw UsageError("spacing " + std::to_string(*config.spacing) + " asks for " + std::to_string(count) +
+        throw UsageError("spacing " + fmt::format("{:g}", *config.spacing) + " asks for " + fmt::format("{:g}", count) +
                          " points, expected fewer than 2^32");
     return std::max<std::size_t>(static_cast<std::size_t>(count), 1);
 }
@@ -53,6 +55,16 @@ std::vector<std::size_t> counts_of_surfaces(const LitSurface& surface, std::size
     for (std::size_t s = 0, k = 0; s < areas.size(); ++s)
         if (areas[s] > 0) counts[s] = shares[k++];
     return counts;
+}
+
+/// Points are written as floats: what they cannot hold is refused.
+void check_size(const LitSurface& surface, double area, std::size_t count) {
+    constexpr double smallest = 1e-36;
+    constexpr double largest = 1e36;
+    const double share = area / static_cast<double>(count);
+    if (share > smallest && share < largest && surface.extent < largest) return;
+    throw UnsupportedInput(fmt::format("{}: a point's share of the surface is {:g} square units, expected {:g} to {:g}",
+                                       surface.scene->source, share, smallest, largest));
 }
 
 [[noreturn]] void refuse_empty(const Scene& scene) {
@@ -76,6 +88,7 @@ PointCloud sample_surface(const Scene& scene, const SampleConfig& config, const 
     SampleReport found;
     found.area = area_of(surface);
     const std::size_t count = number_of_points(config, found.area);
+    check_size(surface, found.area, count);
     found.spacing = std::sqrt(found.area / static_cast<double>(count));
     found.degenerate_faces = surface.degenerate_faces;
     if (found.degenerate_faces > 0)
@@ -86,9 +99,8 @@ PointCloud sample_surface(const Scene& scene, const SampleConfig& config, const 
     Placement placement = config.pattern == SamplePattern::blue_noise
                               ? place_blue_noise(surface, shading, counts, found.spacing, config.seed, progress)
                               : place_stratified(surface, shading, counts, config.seed);
-    report_progress(progress, "sample", 0.7);
     PointCloud cloud =
-        finish_points(surface, shading, std::move(placement), found.spacing, config.normals, found.warnings);
+        finish_points(surface, shading, std::move(placement), found.spacing, config.normals, progress, found.warnings);
     report_progress(progress, "sample", 1);
     if (report != nullptr) *report = std::move(found);
     return cloud;

@@ -2,6 +2,7 @@
 #include "seam_relaxer.h"
 
 #include "point_grid.h"
+#include "stage_progress.h"
 #include "surface_walk.h"
 
 #include <tbb/blocked_range.h>
@@ -26,7 +27,6 @@ constexpr float most_moved = 0.4F;      ///< from where a point began
 constexpr float push_distance = 0.87F;  ///< points nearer than this push each other
 constexpr float near_cell = 2.1F;       ///< cells next to seams: hold all neighbours of points that move
 constexpr float push_step = 0.35F;
-constexpr int rounds = 7;
 constexpr float same_side_cosine = 0.5F;  ///< points whose normals differ more do not see each other
 
 /// Places every half spacing along the edges where parts meet that were sampled on their own.
@@ -75,14 +75,20 @@ public:
             double spacing, std::span<PlacedPoint> points)
         : surface_(surface), shading_(shading), charts_(charts), parts_(parts), spacing_(spacing), points_(points) {}
 
-    void run() {
+    void run(const ProgressCallback& progress) {
         constexpr double farthest = 1e6;  // floats would blur the spacing
         if (surface_.extent / spacing_ > farthest) return;
         const std::vector<V3f> seams = sample_seams(surface_, charts_, parts_, spacing_);
         if (seams.empty()) return;
         collect(cells_near(seams));
+        report_progress(progress, "sample", 0.45);
         list_neighbours(seams);
-        for (int round = 0; round < rounds; ++round) push_once();
+        const int rounds = active_.size() < 100'000 ? 15 : 7;  // the last ones change little
+        StageProgress stage(progress, 0.5, 0.7, rounds);
+        for (int round = 0; round < rounds; ++round) {
+            push_once();
+            stage.advance();
+        }
         while (undo_squeezed()) {
         }
         tbb::parallel_for(std::size_t{0}, near_.size(), [&](std::size_t i) { points_[near_[i]] = now_[i]; });
@@ -253,8 +259,8 @@ private:
 }  // namespace
 
 void relax_seams(const LitSurface& surface, const SurfaceShading& shading, const Charts& charts, const SeamParts& parts,
-                 double spacing, std::span<PlacedPoint> points) {
-    Relaxer(surface, shading, charts, parts, spacing, points).run();
+                 double spacing, const ProgressCallback& progress, std::span<PlacedPoint> points) {
+    Relaxer(surface, shading, charts, parts, spacing, points).run(progress);
 }
 
 }  // namespace vmap

@@ -12,6 +12,7 @@
 #include "lit_surface.h"
 #include "placement.h"
 
+#include <vmap/progress.h>
 #include <vmap/surface_shading.h>
 
 #include <cstdint>
@@ -32,6 +33,6 @@ struct SeamParts {
 /// Moves points near seams. Points of one flat part that had kept_distance keep it.
 /// - spacing: mean distance of neighbouring points, world units
 void relax_seams(const LitSurface& surface, const SurfaceShading& shading, const Charts& charts, const SeamParts& parts,
-                 double spacing, std::span<PlacedPoint> points);
+                 double spacing, const ProgressCallback& progress, std::span<PlacedPoint> points);
 
 }  // namespace vmap

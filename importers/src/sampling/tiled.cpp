@@ -2,6 +2,7 @@
 #include "tiled.h"
 
 #include "random_numbers.h"
+#include "stage_progress.h"
 #include "triangle_raster.h"
 
 #include <tbb/parallel_for.h>
@@ -94,9 +95,13 @@ public:
     }
 
     /// Tries once all that is open; true when something stays open.
-    bool try_once() {
+    bool try_once(const ProgressCallback& progress) {
         std::vector<Job> jobs = make_jobs();
-        tbb::parallel_for(std::size_t{0}, jobs.size(), [&](std::size_t i) { fill(jobs[i]); });
+        StageProgress stage(progress, tries_ == 0 ? 0.2 : 0.4, 0.4, jobs.size());
+        tbb::parallel_for(std::size_t{0}, jobs.size(), [&](std::size_t i) {
+            fill(jobs[i]);
+            stage.advance();
+        });
 
         std::vector<std::pair<std::size_t, std::size_t>> ranges;  // jobs of each pool
         for (std::size_t begin = 0, end = 0; begin < jobs.size(); begin = end) {
@@ -276,9 +281,10 @@ private:
 
 std::vector<bool> place_tiled(const LitSurface& surface, const Charts& charts, std::span<const std::uint32_t> triangles,
                               std::span<const Pool> pools, const BlueNoiseTile& tile, const SurfaceShading& shading,
-                              double spacing, std::uint64_t seed, std::span<PlacedPoint> points) {
+                              double spacing, std::uint64_t seed, const ProgressCallback& progress,
+                              std::span<PlacedPoint> points) {
     Tiler tiler(surface, charts, triangles, pools, tile, shading, spacing, seed, points);
-    while (tiler.try_once()) {
+    while (tiler.try_once(progress)) {
     }
     return tiler.loose();
 }

@@ -9,6 +9,7 @@
 #include "lit_surface.h"
 #include "placement.h"
 
+#include <vmap/progress.h>
 #include <vmap/surface_shading.h>
 
 #include <cstddef>
@@ -36,6 +37,7 @@ struct Pool {
 [[nodiscard]] std::vector<bool> place_tiled(const LitSurface& surface, const Charts& charts,
                                             std::span<const std::uint32_t> triangles, std::span<const Pool> pools,
                                             const BlueNoiseTile& tile, const SurfaceShading& shading, double spacing,
-                                            std::uint64_t seed, std::span<PlacedPoint> points);
+                                            std::uint64_t seed, const ProgressCallback& progress,
+                                            std::span<PlacedPoint> points);
 
 }  // namespace vmap

@@ -477,6 +477,46 @@ TEST(SampleSurface, ExceptionOfTheCallbackStopsTheWork) {
     EXPECT_THROW((void)sample_surface(scene_of(grid_mesh(1, 1, 1, 1)), count_of(100), stop), Error);
 }
 
+TEST(SampleSurface, ProgressRisesToOne) {
+    for (const Scene& scene : varied_scenes()) {
+        double last = 0;
+        const ProgressCallback check = [&](std::string_view stage, double fraction) {
+            EXPECT_EQ(stage, "sample");
+            EXPECT_GE(fraction, last);
+            last = fraction;
+        };
+        (void)sample_surface(scene, count_of(20000), check);
+        EXPECT_EQ(last, 1);
+    }
+}
+
+TEST(SampleSurface, WorkStopsInTheMiddle) {
+    int calls = 0;
+    const ProgressCallback stop = [&](std::string_view, double fraction) {
+        ++calls;
+        if (fraction > 0.5) throw Error(ExitCode::interrupted, "stop");
+    };
+    EXPECT_THROW((void)sample_surface(scene_of(sphere_mesh(100, 50)), count_of(50000), stop), Error);
+    EXPECT_GT(calls, 3);
+}
+
+TEST(SampleSurface, SizesThatFloatsCannotHoldAreRefused) {
+    for (const double size : {1e-25, 1e25}) {
+        M44d scale;
+        scale.setScale(V3d(size));
+        EXPECT_THROW((void)sample_surface(scene_of(box_mesh({1, 1, 1}), {}, scale), count_of(100)), UnsupportedInput);
+    }
+}
+
+TEST(SampleSurface, WorksAtAnyOrdinaryScale) {
+    for (const double size : {1e-9, 1e-3, 1e3, 1e9}) {
+        M44d scale;
+        scale.setScale(V3d(size));
+        const PointCloud cloud = sample_surface(scene_of(sphere_mesh(40, 20), {}, scale), count_of(2000));
+        EXPECT_GE(spacing_ratio(cloud), 0.5) << size;  // across edges too
+    }
+}
+
 TEST(SampleSurface, SharedMeshesAreNumberedPerInstance) {
     Scene scene = scene_of(grid_mesh(1, 1, 1, 1));
     M44d moved;
