@@ -22,6 +22,7 @@ constexpr std::size_t least_cell_points = 16;  ///< smaller cells are not cut fu
 constexpr std::size_t least_plane_points = 6;  ///< three make a plane; some more make sure of it
 constexpr std::size_t parallel_points = 8192;  ///< smaller cells are cut by the thread that has them
 constexpr double normal_tolerance = 2e-3;      ///< radians
+constexpr float far_apart = 1;                 ///< range of a component of the normals that one cell does not have
 
 /// Sums over the points of a cell, relative to an anchor near them so that nothing cancels.
 struct Moments {
@@ -137,14 +138,22 @@ private:
         return true;
     }
 
-    /// Cuts at the middle of the longest side of the bounding box.
+    /// Cuts where normals lie far apart, so that the two sides of a sheet part; else at the middle of the longest side
+    /// of the bounding box.
     std::size_t halve(std::span<std::uint32_t> points) const {
         Imath::Box3f box;
-        for (const std::uint32_t i : points) box.extendBy(cloud_.positions[i]);
-        const int axis = static_cast<int>(box.majorAxis());
-        const float at = box.center()[axis];
-        const auto middle = std::partition(points.begin(), points.end(),
-                                           [&](std::uint32_t i) { return cloud_.positions[i][axis] < at; });
+        Imath::Box3f normals;
+        for (const std::uint32_t i : points) {
+            box.extendBy(cloud_.positions[i]);
+            normals.extendBy(cloud_.normals[i]);
+        }
+        const int turn = static_cast<int>(normals.majorAxis());
+        const bool by_normal = normals.size()[turn] > far_apart;
+        const std::vector<V3f>& values = by_normal ? cloud_.normals : cloud_.positions;
+        const int axis = by_normal ? turn : static_cast<int>(box.majorAxis());
+        const float at = (by_normal ? normals : box).center()[axis];
+        const auto middle =
+            std::partition(points.begin(), points.end(), [&](std::uint32_t i) { return values[i][axis] < at; });
         const auto count = static_cast<std::size_t>(middle - points.begin());
         return count == 0 || count == points.size() ? points.size() / 2 : count;
     }

@@ -73,13 +73,14 @@ public:
         }
         place_texels(true);
         report_progress(progress, "indirect", 0.75);
-        const FixedPointResult solution = solve(std::min(1e-3, 0.05 * config_.tolerance));
+        const double residual = std::min(1e-3, 0.05 * config_.tolerance);
+        const FixedPointResult solution = solve(residual);
 
         IndirectResult result;
         result.irradiance = at_points(solution.x);
         result.receivers = receivers_.size();
         result.rays = receivers_.size() * fineness_.rays;
-        result.converged = solution.residual <= 1e-2 * std::max(config_.tolerance, 0.01);
+        result.converged = solution.residual <= residual;
         measure_noise(solution.x, result);
         return result;
     }

@@ -98,6 +98,22 @@ TEST(FindPatches, WallWithADoorIsCutIntoConvexPieces) {
     EXPECT_NEAR(area, 10.0, 0.05);
 }
 
+TEST(FindPatches, EachSideOfASheetIsOneFlatPatch) {
+    for (const float thickness : {0.0F, 1e-4F}) {
+        std::mt19937 random(5);
+        PointCloud cloud;
+        add_wall(cloud, V3f(0, 0, thickness), V3f(1, 0, 0), V3f(0, 1, 0), 40, random);
+        add_wall(cloud, V3f(0), V3f(0, 1, 0), V3f(1, 0, 0), 40, random);
+        const PatchSet set = find_patches(cloud);
+        ASSERT_EQ(set.patches.size(), 2U) << "thickness " << thickness;
+        for (std::size_t p = 0; p < 2; ++p) {
+            EXPECT_TRUE(set.patches[p].flat);
+            EXPECT_NEAR(outline_area(set, p), 1, 1e-3);
+        }
+        EXPECT_NEAR(set.patches[0].normal.dot(set.patches[1].normal), -1, 1e-5);
+    }
+}
+
 TEST(FindPatches, SphereFallsIntoSmallGroupsOfBoundedNormals) {
     PointCloud cloud;
     constexpr int n = 5000;

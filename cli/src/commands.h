@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+/// \file
+/// The sub-commands of the program. Each adds its parser and returns what to run.
+#pragma once
+
+#include "job.h"
+
+namespace vmap {
+
+[[nodiscard]] Command add_light_command(CLI::App& program);
+[[nodiscard]] Command add_sample_command(CLI::App& program);
+[[nodiscard]] Command add_info_command(CLI::App& program);
+
+}  // namespace vmap

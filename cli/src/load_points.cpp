@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "load_points.h"
+
+#include "parse_values.h"
+#include "stopwatch.h"
+
+#include <map>
+
+namespace vmap {
+
+void add_load_options(CLI::App& app, LoadOptions& options) {
+    app.add_option("FILE", options.file, "glTF, GLB, OBJ, PLY, OFF, STL or XYZ file")->required();
+    app.add_option("--scene", options.scene, "glTF: the scene to read, by name or index")->type_name("NAME");
+    app.add_option("--light-units", options.light_units,
+                   "glTF: what the numbers of lights mean: compat (W/sr and W/m^2 as they stand), spec (photometric), "
+                   "raw (Blender's watts)")
+        ->transform(CLI::CheckedTransformer(std::map<std::string, LightUnits>{
+            {"compat", LightUnits::compat}, {"spec", LightUnits::spec}, {"raw", LightUnits::raw}}))
+        ->type_name("compat|spec|raw")
+        ->default_str("compat");
+    auto* points =
+        app.add_option("--points", options.sample.points, "Points to sample from the surface")->type_name("N");
+    app.add_option("--spacing", options.sample.spacing, "Mean distance of points instead, world units")
+        ->excludes(points)
+        ->type_name("S");
+    app.add_option("--pattern", options.sample.pattern, "How points are spread")
+        ->transform(CLI::CheckedTransformer(std::map<std::string, SamplePattern>{
+            {"blue-noise", SamplePattern::blue_noise}, {"stratified", SamplePattern::stratified}}))
+        ->type_name("blue-noise|stratified")
+        ->default_str("blue-noise");
+    app.add_option("--normals", options.sample.normals, "Normals that irradiance is defined over")
+        ->transform(CLI::CheckedTransformer(std::map<std::string, SampleNormals>{
+            {"geometric", SampleNormals::geometric}, {"shading", SampleNormals::shading}}))
+        ->type_name("geometric|shading")
+        ->default_str("geometric");
+    app.add_option("--sides", options.sample.sides, "Sides of the surface that get points")
+        ->transform(CLI::CheckedTransformer(std::map<std::string, SampleSides>{
+            {"auto", SampleSides::automatic}, {"front", SampleSides::front}, {"both", SampleSides::both}}))
+        ->type_name("auto|front|both")
+        ->default_str("auto");
+    app.add_option("--light", options.lights,
+                   "Adds a light: point:X,Y,Z:W_PER_SR or sun:DX,DY,DZ:W_PER_M2, in the axes of the file; may repeat")
+        ->type_name("LIGHT");
+}
+
+LoadedPoints load_points(const LoadOptions& options, Job& job) {
+    LoadedPoints loaded;
+    for (const std::string& light : options.lights) loaded.lights.push_back(parse_light(light));
+
+    Stopwatch importing;
+    const ProgressCallback progress = job.progress();
+    report_progress(progress, "import", 0);
+    Input input =
+        read_input(options.file, {.scene = options.scene.empty() ? std::optional<std::string>() : options.scene,
+                                  .light_units = options.light_units,
+                                  .up = std::nullopt});
+    loaded.scene = std::move(input.scene);
+    job.warn(loaded.scene.warnings);
+    loaded.lights.insert(loaded.lights.end(), loaded.scene.lights.begin(), loaded.scene.lights.end());
+    loaded.info.light_units = options.light_units;
+    loaded.info.source = loaded.scene.source;
+    loaded.import_seconds = importing.seconds();
+
+    Stopwatch sampling;
+    SampleConfig sample = options.sample;
+    sample.seed = job.options().seed;
+    SampleReport report;
+    loaded.cloud.points = sample_surface(loaded.scene, sample, progress, &report);
+    job.warn(report.warnings);
+    loaded.sample_seconds = sampling.seconds();
+    return loaded;
+}
+
+}  // namespace vmap
