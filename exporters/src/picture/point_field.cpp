@@ -103,7 +103,7 @@ PointField::PointField(const PointCloud& cloud, std::span<const std::uint32_t> s
         Level level;
         level.number = number - used.front();
         level.reach = reach * 1.25F * spacing_ * std::exp2(static_cast<float>(number));
-        level.cell = std::max(static_cast<double>(level.reach), extent / 0.25 * static_cast<double>(cell_limit));
+        level.cell = std::max(static_cast<double>(level.reach), extent / (0.25 * static_cast<double>(cell_limit)));
         levels_.push_back(level);
     }
 
