@@ -53,7 +53,7 @@ Container open_glb(std::span<const std::byte> file) {
     std::span<const std::byte> rest = file.subspan(header_size);
     const Chunk json = take_chunk(rest);
     if (json.type != json_chunk || json.data.empty()) throw BrokenContent("the first GLB chunk is not a JSON text");
-    Container container{as_text(json.data), std::nullopt};
+    Container container{.json = as_text(json.data), .bin = std::nullopt, .is_glb = true};
     for (bool second = true; !rest.empty(); second = false) {
         const Chunk chunk = take_chunk(rest);
         if (chunk.type == json_chunk) throw BrokenContent("the GLB has two JSON chunks");
@@ -69,7 +69,7 @@ Container open_glb(std::span<const std::byte> file) {
 Container open_container(std::span<const std::byte> file) {
     if (file.empty()) throw BrokenContent("the file is empty");
     if (file.size() >= 4 && word_at(file, 0) == glb_magic) return open_glb(file);
-    return {as_text(file), std::nullopt};
+    return {.json = as_text(file), .bin = std::nullopt, .is_glb = false};
 }
 
 }  // namespace vmap::gltf

@@ -14,6 +14,7 @@ namespace vmap::gltf {
 struct Container {
     std::string_view json;                          ///< the document
     std::optional<std::span<const std::byte>> bin;  ///< the GLB's binary chunk, padding included
+    bool is_glb = false;
 };
 
 /// Splits a file after checking every length that it claims.

@@ -2,8 +2,9 @@
 // The document is read by nlohmann-json through a typed, checking reader, not by tinygltf. tinygltf is a parser: it
 // drops members of the wrong type without a word, follows references out of the scene's folder, trusts lengths and
 // recurses by the file's nesting. A gate before it would have to check every member of the text, which is the whole
-// work of reading it; after that a second parse would only cost time. Tests let tinygltf read the same files and
-// compare.
+// work of reading it; a second parse after that would only cost time. Debian's libdraco, which unpacks meshes here,
+// also exports a tinygltf of another version, and two in one process crash. A test lets tinygltf read the bundled
+// scenes and compares.
 #include <vmap/importers/gltf.h>
 
 #include "../content_error.h"
@@ -51,6 +52,8 @@ Input import_unnamed(const std::filesystem::path& file, const InputConfig& confi
     const SceneFolder folder(file);
     gltf::Buffers buffers(document, folder, container.bin);
     Input input = gltf::build_scene(document, document.scenes[*scene], buffers, folder, warnings);
+    input.facts.format = container.is_glb ? "glTF, binary" : "glTF, text";
+    input.facts.up = document.own ? document.own->up : UpAxis::y;
     input.scene.source = printable(file.filename().string());
     input.scene.warnings = warnings.lines();
     for (const std::string& name : document.extensions_used) input.scene.extensions.push_back(printable(name));

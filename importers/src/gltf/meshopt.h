@@ -13,6 +13,7 @@ namespace vmap::gltf {
 
 /// Decompresses a view and undoes its filter.
 ///
+/// - view: the caller has agreed to the memory for count * stride bytes
 /// - compressed: the bytes that the view names
 /// - returns count * stride bytes
 /// - throws BrokenContent when the bytes are damaged or the numbers do not suit the codec

@@ -45,9 +45,14 @@ public:
     Input build(const SceneEntry& entry) {
         for (const std::uint32_t node : nodes_of(document_, entry)) add(document_.nodes[node]);
         finish_materials();
-        Input input{.facts = {.format = "glTF", .up = UpAxis::y, .vertices = 0, .polygons = 0},
-                    .scene = std::move(scene_),
-                    .points = points_.finish()};
+        Input input;
+        for (const Mesh& mesh : scene_.meshes) {
+            input.facts.vertices += mesh.positions.size();
+            input.facts.polygons += mesh.triangle_count();
+        }
+        input.scene = std::move(scene_);
+        input.points = points_.finish();
+        if (input.points) input.facts.vertices += input.points->cloud.points.size();
         if (input.scene.instances.empty() && !input.points)
             throw UnsupportedContent("holds neither surface nor points");
         return input;

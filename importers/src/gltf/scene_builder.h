@@ -14,7 +14,7 @@ namespace vmap::gltf {
 /// Reads what the nodes of a scene hold: meshes, points, lights, cameras and the images that they need.
 ///
 /// - document: its nodes are placed in the world
-/// - returns an Input without source, warnings and extensions
+/// - returns an Input without the names of its format and source, warnings and extensions
 /// - throws BrokenContent for data that break the specification, UnsupportedContent for a scene that exceeds a limit or
 ///   holds neither surface nor points
 [[nodiscard]] Input build_scene(const Document& document, const SceneEntry& scene, Buffers& buffers,
