@@ -200,7 +200,7 @@ private:
 void import_large(benchmark::State& state) {
     const fs::path& path = large_file();
     double peak = 0;
-    for (auto _ : state) {
+    while (state.KeepRunning()) {
         const PeakMemory memory;
         const vmap::Input input = vmap::import_gltf(path);
         if (input.scene.images.size() != 3) state.SkipWithError("the file was not read whole");
@@ -214,7 +214,7 @@ BENCHMARK(import_large)->Unit(benchmark::kMillisecond)->UseRealTime()->MeasurePr
 void import_large_by_tinygltf(benchmark::State& state) {
     const fs::path& path = large_file();
     double peak = 0;
-    for (auto _ : state) {
+    while (state.KeepRunning()) {
         const PeakMemory memory;
         tinygltf::TinyGLTF reader;
         tinygltf::Model model;

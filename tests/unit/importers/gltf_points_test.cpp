@@ -2,8 +2,6 @@
 // Primitives of mode POINTS: foreign ones with what they have, our own without loss.
 #include "gltf_file.h"
 
-#include <vmap/exporters/gltf_points.h>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -111,47 +109,6 @@ TEST(GltfPoints, MeshesAndPointsTogether) {
     EXPECT_EQ(input.scene.instances.size(), 1);
     EXPECT_EQ(input.points.value_or(PointFile()).cloud.points.size(), 3);
 }
-
-/// A cloud with all that glTF points can hold, of numbers that are not round.
-LitCloud full_cloud() {
-    LitCloud cloud;
-    PointCloud& points = cloud.points;
-    points.origin = V3d(4.5e6, -10, 0.25);
-    for (int i = 0; i < 100; ++i) {
-        const float t = static_cast<float>(i) / 7;
-        points.positions.emplace_back(std::sin(t), t, std::cos(t));
-        points.normals.push_back(V3f(std::sin(t), 0.3F, std::cos(t)).normalized());
-        points.areas.push_back(1e-3F + t * t);
-        points.albedo.emplace_back(0.1F, t / 20, 0.9F);
-        points.emission.emplace_back(t, 0.0F, 1 / (1 + t));
-        cloud.irradiance.emplace_back(t * 1e3F, t, 1e-7F);
-    }
-    return cloud;
-}
-
-class OwnPoints : public testing::TestWithParam<UpAxis> {};
-
-TEST_P(OwnPoints, ComeBackAsTheyWere) {
-    const TestFolder folder;
-    const LitCloud cloud = full_cloud();
-    for (const GltfContainer container : {GltfContainer::binary, GltfContainer::embedded}) {
-        const std::filesystem::path path = folder.path() / "points.glb";
-        FileWriter writer(path);
-        write_gltf_points(
-            writer, cloud,
-            {.up = GetParam(), .light_units = LightUnits::spec, .exposure = 0.375, .source = "a room.glb"},
-            {.container = container});
-        writer.commit();
-        const PointFile file = import_gltf(path).points.value_or(PointFile());
-        EXPECT_EQ(file.cloud, cloud);
-        EXPECT_TRUE(file.ours);
-        EXPECT_EQ(file.light_units, LightUnits::spec);
-        EXPECT_EQ(file.exposure, 0.375);
-        EXPECT_EQ(file.source, "a room.glb");
-    }
-}
-
-INSTANTIATE_TEST_SUITE_P(Axes, OwnPoints, testing::Values(UpAxis::y, UpAxis::z));
 
 }  // namespace
 }  // namespace vmap::test
