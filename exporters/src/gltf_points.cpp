@@ -50,6 +50,8 @@ std::vector<Attribute> attributes_of(const LitCloud& cloud, const FilePoints& po
         attributes.push_back({"_IRRADIANCE", [&](std::size_t i) { return cloud.irradiance[i]; }});
     if (!cloud.points.albedo.empty())
         attributes.push_back({"_ALBEDO", [&](std::size_t i) { return cloud.points.albedo[i]; }});
+    if (cloud.points.emits())
+        attributes.push_back({"_EMISSION", [&](std::size_t i) { return cloud.points.emission[i]; }});
     if (!cloud.points.normals.empty()) {
         attributes.push_back({"_NORMAL", [&](std::size_t i) { return points.normal(i); }});
         if (config.normals) attributes.push_back({"NORMAL", [&](std::size_t i) { return points.normal(i); }});
@@ -86,6 +88,26 @@ ordered_json array_of(const Imath::V3d& v) {
     return ordered_json::array({v.x, v.y, v.z});
 }
 
+/// Bytes of all attributes, then of the areas.
+std::size_t data_size_of(const LitCloud& cloud, const std::vector<Attribute>& attributes) {
+    return cloud.points.size() * bytes_per_value * attributes.size() + cloud.points.areas.size() * sizeof(float);
+}
+
+/// Appends a buffer view and its accessor of floats; returns the accessor's index.
+std::size_t add_accessor(ordered_json& document, std::size_t offset, std::size_t count, const char* type,
+                         std::size_t components) {
+    constexpr int array_buffer = 34962;
+    constexpr int component_float = 5126;
+    const std::size_t index = document["accessors"].size();
+    document["bufferViews"].push_back({{"buffer", 0},
+                                       {"byteOffset", offset},
+                                       {"byteLength", count * components * sizeof(float)},
+                                       {"target", array_buffer}});
+    document["accessors"].push_back(
+        {{"bufferView", index}, {"componentType", component_float}, {"count", count}, {"type", type}});
+    return index;
+}
+
 ordered_json document_of(const LitCloud& cloud, const FilePoints& points, const OutputInfo& info,
                          const std::vector<Attribute>& attributes) {
     ordered_json document;
@@ -103,53 +125,49 @@ ordered_json document_of(const LitCloud& cloud, const FilePoints& points, const 
     document["materials"] = array({{"name", "lit points"},
                                    {"pbrMetallicRoughness", {{"metallicFactor", 0.0}, {"roughnessFactor", 1.0}}},
                                    {"extensions", {{"KHR_materials_unlit", ordered_json::object()}}}});
-    document["buffers"] = array({{"byteLength", count * bytes_per_value * attributes.size()}});
+    document["buffers"] = array({{"byteLength", data_size_of(cloud, attributes)}});
 
     ordered_json primitive = {{"mode", 0}, {"material", 0}, {"attributes", ordered_json::object()}};
     document["bufferViews"] = ordered_json::array();
     document["accessors"] = ordered_json::array();
+    std::size_t offset = 0;
     for (const Attribute& attribute : attributes) {
-        const std::size_t index = document["accessors"].size();
-        constexpr int array_buffer = 34962;
-        constexpr int component_float = 5126;
-        document["bufferViews"].push_back({{"buffer", 0},
-                                           {"byteOffset", index * count * bytes_per_value},
-                                           {"byteLength", count * bytes_per_value},
-                                           {"target", array_buffer}});
-        document["accessors"].push_back(
-            {{"bufferView", index}, {"componentType", component_float}, {"count", count}, {"type", "VEC3"}});
-        primitive["attributes"][attribute.name] = index;
+        primitive["attributes"][attribute.name] = add_accessor(document, offset, count, "VEC3", 3);
+        offset += count * bytes_per_value;
     }
     Imath::Box3f box;
     for (std::size_t i = 0; i < count; ++i) box.extendBy(points.position(i));
     document["accessors"][0]["min"] = array_of(Imath::V3d(box.min));
     document["accessors"][0]["max"] = array_of(Imath::V3d(box.max));
-    document["meshes"] = array({{"name", "lit points"},
-                                {"primitives", array(primitive)},
-                                {"extras", {{"radius", mean_radius(cloud.points)}}}});
+    ordered_json extras = {{"radius", mean_radius(cloud.points)}};
+    if (!cloud.points.areas.empty()) extras["areas"] = add_accessor(document, offset, count, "SCALAR", 1);
+    document["meshes"] = array({{"name", "lit points"}, {"primitives", array(primitive)}, {"extras", extras}});
     return document;
 }
 
 using Sink = std::function<void(const char* data, std::size_t size)>;
 
-/// Attribute after attribute, as the buffer views name them. Chunks are whole vectors, so their size divides by three.
-void stream_attributes(std::size_t count, const std::vector<Attribute>& attributes, const Sink& sink,
-                       const ProgressCallback& progress) {
-    const auto total = static_cast<double>(count * attributes.size());
-    std::size_t before = 0;
-    for (const Attribute& attribute : attributes) {
+/// Attribute after attribute and then the areas, as the buffer views name them.
+void stream_data(const LitCloud& cloud, const std::vector<Attribute>& attributes, const Sink& sink,
+                 const ProgressCallback& progress) {
+    const auto total = static_cast<double>(data_size_of(cloud, attributes));
+    std::size_t written = 0;
+    const auto count_and_sink = [&](const char* data, std::size_t size, std::size_t) {
+        sink(data, size);
+        written += size;
+        report_progress(progress, "write", static_cast<double>(written) / total);
+    };
+    const auto put_areas = [&](RowBuffer& row, std::size_t i) { row.put(cloud.points.areas[i]); };
+    for (const Attribute& attribute : attributes)
         stream_rows(
-            count, bytes_per_value, [&](RowBuffer& row, std::size_t i) { row.put(attribute.value(i)); },
-            [&](const char* data, std::size_t size, std::size_t done) {
-                sink(data, size);
-                report_progress(progress, "write", static_cast<double>(before + done) / total);
-            });
-        before += count;
-    }
+            cloud.points.size(), bytes_per_value, [&](RowBuffer& row, std::size_t i) { row.put(attribute.value(i)); },
+            count_and_sink);
+    stream_rows(cloud.points.areas.size(), sizeof(float), put_areas, count_and_sink);
 }
 
-void write_binary(FileWriter& file, const ordered_json& document, std::size_t data_size,
-                  const std::function<void(const Sink&)>& stream_data) {
+using StreamData = std::function<void(const Sink&)>;
+
+void write_binary(FileWriter& file, const ordered_json& document, std::size_t data_size, const StreamData& stream) {
     std::string json = document.dump();
     json.resize((json.size() + 3) / 4 * 4, ' ');
 
@@ -171,11 +189,10 @@ void write_binary(FileWriter& file, const ordered_json& document, std::size_t da
     if (data_size == 0) return;
     put(data_size);
     file.write("BIN\0", 4);
-    stream_data([&](const char* data, std::size_t size) { file.write(data, size); });
+    stream([&](const char* data, std::size_t size) { file.write(data, size); });
 }
 
-void write_embedded(FileWriter& file, ordered_json document, std::size_t data_size,
-                    const std::function<void(const Sink&)>& stream_data) {
+void write_embedded(FileWriter& file, ordered_json document, std::size_t data_size, const StreamData& stream) {
     if (data_size == 0) {
         file.stream() << document.dump(2) << '\n';
         return;
@@ -186,10 +203,18 @@ void write_embedded(FileWriter& file, ordered_json document, std::size_t data_si
     const std::string json = document.dump(2);
     const std::size_t place = json.rfind(marker) + marker.size() - 1;
     file.write(json.data(), place);
-    stream_data([&](const char* data, std::size_t size) {
-        const std::string text = base64(std::string_view(data, size));
+    const auto put = [&](std::string_view bytes) {
+        const std::string text = base64(bytes);
         file.write(text.data(), text.size());
+    };
+    std::string waiting;  // texts join where their bytes are a multiple of three
+    stream([&](const char* data, std::size_t size) {
+        waiting.append(data, size);
+        const std::size_t whole = waiting.size() / 3 * 3;
+        put(std::string_view(waiting).substr(0, whole));
+        waiting.erase(0, whole);
     });
+    put(waiting);
     file.stream() << std::string_view(json).substr(place + 1) << '\n';
 }
 
@@ -199,15 +224,14 @@ void write_gltf_points(FileWriter& file, const LitCloud& cloud, const OutputInfo
                        const ProgressCallback& progress) {
     const FilePoints points(cloud.points, info.up);
     const std::vector<Attribute> attributes = attributes_of(cloud, points, info, config);
-    const std::size_t count = cloud.points.size();
-    const std::size_t data_size = count * bytes_per_value * attributes.size();
-    const auto stream_data = [&](const Sink& sink) { stream_attributes(count, attributes, sink, progress); };
+    const std::size_t data_size = data_size_of(cloud, attributes);
+    const auto stream = [&](const Sink& sink) { stream_data(cloud, attributes, sink, progress); };
 
     const ordered_json document = document_of(cloud, points, info, attributes);
     if (config.container == GltfContainer::binary)
-        write_binary(file, document, data_size, stream_data);
+        write_binary(file, document, data_size, stream);
     else
-        write_embedded(file, document, data_size, stream_data);
+        write_embedded(file, document, data_size, stream);
 }
 
 }  // namespace vmap

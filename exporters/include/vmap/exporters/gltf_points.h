@@ -26,8 +26,10 @@ struct GltfPointsConfig {
 ///   COLOR_0      exposure x radiance, linear, clamped to [0, 1]; the albedo of a cloud without light
 ///   _IRRADIANCE  W/m^2, linear; absent in a cloud without light
 ///   _ALBEDO, _NORMAL
+///   _EMISSION    W/(m^2 sr), linear; only when something emits
 ///
-/// `mesh.extras.radius` is the mean radius of a point in world units. `asset.extras` holds up, light_units with the two
+/// `mesh.extras.radius` is the mean radius of a point in world units, `mesh.extras.areas` an accessor of scalars that
+/// holds the area of each point in world units squared; it is no attribute. `asset.extras` holds up, light_units with the two
 /// factors, exposure and source. The material is unlit, since the colours are light already.
 ///
 /// A cloud without points gives a valid file with an empty scene. Needs no memory that grows with the cloud.
