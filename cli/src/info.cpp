@@ -88,8 +88,8 @@ void print_text(const Json& json) {
 void run_info(const InfoOptions& options, Job& job) {
     const Input input =
         read_input(options.file, {.scene = options.scene.empty() ? std::optional<std::string>() : options.scene,
-                       .light_units = LightUnits::compat,
-                       .up = std::nullopt});
+                                  .light_units = LightUnits::compat,
+                                  .up = std::nullopt});
     job.warn(input.scene.warnings);
     const Json json = to_json(options, input, summarize(input));
     if (options.json)

@@ -29,8 +29,8 @@ struct GltfPointsConfig {
 ///   _EMISSION    W/(m^2 sr), linear; only when something emits
 ///
 /// `mesh.extras.radius` is the mean radius of a point in world units, `mesh.extras.areas` an accessor of scalars that
-/// holds the area of each point in world units squared; it is no attribute. `asset.extras` holds up, light_units with the two
-/// factors, exposure and source. The material is unlit, since the colours are light already.
+/// holds the area of each point in world units squared; it is no attribute. `asset.extras` holds up, light_units with
+/// the two factors, exposure and source. The material is unlit, since the colours are light already.
 ///
 /// A cloud without points gives a valid file with an empty scene. Needs no memory that grows with the cloud.
 /// Throws FileError, and UnsupportedInput when the data exceeds the 4 GiB of a .glb; the caller commits the file.

@@ -30,7 +30,7 @@ struct PovConfig {
     Imath::C3f sky{0, 0, 0};       ///< radiance from beyond the scene, W/(m^2 sr)
     std::optional<Picture> sky_picture;  ///< the same by direction: equirectangular, its centre along +X, its right
                                          ///< half along +Z; takes the place of sky
-    int width = 512;  ///< of the picture in the header's command
+    int width = 512;                     ///< of the picture in the header's command
     int height = 512;
 };
 
