@@ -76,7 +76,10 @@ int main_of(int argc, const char* const* argv) {
 }  // namespace
 }  // namespace vmap
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
     std::signal(SIGPIPE, SIG_IGN);  // a reader that goes away is a write error like any other
     return vmap::main_of(argc, argv);
+} catch (...) {
+    std::fputs("vmap: error: out of memory\n", stderr);
+    return 1;
 }

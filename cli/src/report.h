@@ -33,9 +33,9 @@ struct JobReport {
     double area = 0;             ///< lit sides, world units squared
     double mean_irradiance = 0;  ///< area-weighted mean of the channels' mean, W/m^2
     StageSeconds seconds{};
-    std::optional<LightReport> light{};  ///< of jobs that lit something
+    std::optional<LightReport> light;  ///< of jobs that lit something
     double tolerance = 0;
-    std::vector<std::string> outputs{};
+    std::vector<std::string> outputs;
 };
 
 /// The largest amount of memory that the process has had, bytes.

@@ -38,6 +38,7 @@ void run_sample(const SampleOptions& options, Job& job) {
                                            .sample = loaded.sample_seconds,
                                            .write = writing.seconds(),
                                            .total = total.seconds()},
+                               .light = std::nullopt,
                                .outputs = outputs.paths()};
         write_report(*report_file, report, job);
     }
