@@ -117,9 +117,10 @@ std::optional<TextureView> ObjMaterials::load_texture(const ObjTexture& texture,
             file.warnings.add("images that cannot be read are left out", texture.path + ": " + error.what());
         }
     }
-    if (!known->second) return std::nullopt;
+    const std::optional<std::size_t> image = known->second;
+    if (!image) return std::nullopt;
     TextureView view = texture.view;
-    view.image = *known->second;
+    view.image = *image;
     return view;
 }
 

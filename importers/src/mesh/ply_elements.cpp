@@ -64,7 +64,7 @@ private:
     T take() {
         char raw[sizeof(T)];
         if (bytes_.size() < sizeof raw) throw BrokenContent("the file ends before its last element");
-        std::memcpy(raw, bytes_.data(), sizeof raw);
+        bytes_.copy(raw, sizeof raw);
         bytes_.remove_prefix(sizeof raw);
         if (swap_) std::reverse(std::begin(raw), std::end(raw));
         T value;
@@ -169,7 +169,7 @@ private:
 
     void read_list(const Step& step) {
         const PlyProperty& property = *step.property;
-        const std::int64_t length = values_.integer(property, *property.length_type);
+        const std::int64_t length = values_.integer(property, property.length_type.value());
         if (length < 0 || !values_.holds(static_cast<std::uint64_t>(length), property.type))
             fail_at(element_, row_,
                     fmt::format("the list {} has {} values, more than the file can hold or less than none",

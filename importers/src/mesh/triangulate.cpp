@@ -56,13 +56,13 @@ public:
         std::uint32_t candidate = 0;
         std::size_t refused = 0;
         for (std::size_t left = corners_.size(); left > 3;) {
-            if (is_ear(candidate))
-                refused = 0;
-            else if (++refused < left && tests_ < most_tests) {
-                candidate = next_[candidate];
-                continue;
-            } else
+            if (!is_ear(candidate)) {
+                if (++refused < left && tests_ < most_tests) {
+                    candidate = next_[candidate];
+                    continue;
+                }
                 clean = false;
+            }
             triangles.push_back({previous_[candidate], candidate, next_[candidate]});
             next_[previous_[candidate]] = next_[candidate];
             previous_[next_[candidate]] = previous_[candidate];

@@ -57,8 +57,8 @@ public:
 private:
     void read_line() {
         static constexpr std::size_t most_columns = 10;
-        double values[most_columns];
-        bool whole[most_columns];
+        double values[most_columns] = {};
+        bool whole[most_columns] = {};
         std::size_t count = 0;
         for (std::string_view word = words_.word_on_line(); !word.empty(); word = words_.word_on_line()) {
             if (count == most_columns) words_.fail("more than 10 columns");
