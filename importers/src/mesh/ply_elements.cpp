@@ -169,7 +169,7 @@ private:
 
     void read_list(const Step& step) {
         const PlyProperty& property = *step.property;
-        const std::int64_t length = values_.integer(property, property.length_type.value());
+        const std::int64_t length = values_.integer(property, property.length_type.value_or(PlyType::uint8));
         if (length < 0 || !values_.holds(static_cast<std::uint64_t>(length), property.type))
             fail_at(element_, row_,
                     fmt::format("the list {} has {} values, more than the file can hold or less than none",

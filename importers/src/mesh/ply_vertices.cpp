@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
 #include <utility>
 
@@ -32,28 +33,34 @@ public:
     [[nodiscard]] bool has(const Names& names) const { return has({names[0], names[1], names[2]}); }
 
     [[nodiscard]] std::size_t count() const { return vertex_.count; }
-    [[nodiscard]] PlyType type(const char* name) const { return vertex_.properties[find(name).value()].type; }
+    [[nodiscard]] PlyType type(const char* name) const { return vertex_.properties[index_of(name)].type; }
 
     template <class Vector, class Scalar = typename Vector::BaseType>
     void add(const Names& names, std::vector<Vector>& to) {
         to.resize(count());
         for (std::size_t k = 0; k < names.size(); ++k)
-            columns_.push_back({find(names[k]).value(), reinterpret_cast<Scalar*>(to.data()) + k, names.size()});
+            columns_.push_back({index_of(names[k]), reinterpret_cast<Scalar*>(to.data()) + k, names.size()});
     }
     template <class Scalar>
     void add(const char* name, std::vector<Scalar>& to) {
         to.resize(count());
-        columns_.push_back({find(name).value(), to.data(), 1});
+        columns_.push_back({index_of(name), to.data(), 1});
     }
     void add(const std::array<const char*, 2>& names, std::vector<Imath::V2f>& to) {
         to.resize(count());
-        for (std::size_t k = 0; k < names.size(); ++k)
-            columns_.push_back({find(names[k]).value(), &to.data()->x + k, 2});
+        for (std::size_t k = 0; k < names.size(); ++k) columns_.push_back({index_of(names[k]), &to.data()->x + k, 2});
     }
 
     void read(PlyElements& elements) const { elements.read(vertex_, columns_); }
 
 private:
+    /// Of a property that the file has.
+    [[nodiscard]] std::size_t index_of(const char* name) const {
+        const auto found = find(name);
+        assert(found);
+        return found ? *found : 0;
+    }
+
     [[nodiscard]] std::optional<std::size_t> find(const char* name) const {
         const std::optional<std::size_t> found = vertex_.find(name);
         return found && !vertex_.properties[*found].is_list() ? found : std::nullopt;
