@@ -14,8 +14,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <memory>
 #include <numbers>
-#include <optional>
 
 namespace vmap {
 namespace {
@@ -63,13 +63,13 @@ public:
         place_receivers();
         average_surface();
         trace();
-        fit_.emplace(surface_, grids_, receivers_);
+        fit_ = std::make_unique<LocalFit>(surface_, grids_, receivers_);
         // The first reflection has the sharpest features: it says where to refine, without solving for the rest.
         for (std::uint32_t level = 0; level < ReceiverGrid::max_level; ++level) {
             report_progress(progress, "indirect", 0.3 + 0.15 * level);
             if (!refine(level, gather(first_radiosity_))) break;
             trace();
-            fit_.emplace(surface_, grids_, receivers_);
+            fit_ = std::make_unique<LocalFit>(surface_, grids_, receivers_);
         }
         place_texels(true);
         report_progress(progress, "indirect", 0.75);
@@ -325,7 +325,7 @@ private:
     std::vector<std::uint32_t> grid_of_;    ///< per patch, of flat ones
     std::vector<std::uint32_t> center_of_;  ///< per patch, receiver of curved ones
     std::vector<std::uint32_t> hits_;       ///< texel per ray; no_texel where it escapes or meets a back
-    std::optional<LocalFit> fit_;
+    std::unique_ptr<const LocalFit> fit_;
 };
 
 }  // namespace
