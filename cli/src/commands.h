@@ -10,5 +10,7 @@ namespace vmap {
 [[nodiscard]] Command add_light_command(CLI::App& program);
 [[nodiscard]] Command add_sample_command(CLI::App& program);
 [[nodiscard]] Command add_info_command(CLI::App& program);
+[[nodiscard]] Command add_render_command(CLI::App& program);
+[[nodiscard]] Command add_export_command(CLI::App& program);
 
 }  // namespace vmap

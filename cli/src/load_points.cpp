@@ -4,20 +4,50 @@
 #include "parse_values.h"
 #include "stopwatch.h"
 
+#include <vmap/error.h>
+
 #include <map>
 
 namespace vmap {
+namespace {
 
-void add_load_options(CLI::App& app, LoadOptions& options) {
-    app.add_option("FILE", options.file, "glTF, GLB, OBJ, PLY, OFF, STL or XYZ file")->required();
-    app.add_option("--scene", options.scene, "glTF: the scene to read, by name or index")->type_name("NAME");
-    app.add_option("--light-units", options.light_units,
+/// Points of our own files go on as they are.
+void take_points(PointFile points, const std::string& file, LoadedPoints& loaded) {
+    const PointCloud& cloud = points.cloud.points;
+    if (cloud.normals.empty() || cloud.areas.empty() || cloud.albedo.empty())
+        throw UnsupportedInput(file + ": points without " +
+                               (cloud.normals.empty() ? "normals"
+                                : cloud.areas.empty() ? "areas"
+                                                      : "albedo") +
+                               "; expected a mesh or a file that vmap wrote");
+    if (points.ours) {
+        loaded.info.light_units = points.light_units;
+        loaded.info.source = points.source;
+    }
+    loaded.cloud = std::move(points.cloud);
+}
+
+}  // namespace
+
+void add_scene_options(CLI::App& app, std::string& scene, LightUnits& light_units) {
+    app.add_option("--scene", scene, "glTF: the scene to read, by name or index")->type_name("NAME");
+    app.add_option("--light-units", light_units,
                    "glTF: what the numbers of lights mean: compat (W/sr and W/m^2 as they stand), spec (photometric), "
                    "raw (Blender's watts)")
         ->transform(CLI::CheckedTransformer(std::map<std::string, LightUnits>{
             {"compat", LightUnits::compat}, {"spec", LightUnits::spec}, {"raw", LightUnits::raw}}))
         ->type_name("compat|spec|raw")
         ->default_str("compat");
+}
+
+InputConfig input_config(const std::string& scene, LightUnits light_units) {
+    return {
+        .scene = scene.empty() ? std::optional<std::string>() : scene, .light_units = light_units, .up = std::nullopt};
+}
+
+void add_load_options(CLI::App& app, LoadOptions& options) {
+    app.add_option("FILE", options.file, "glTF, GLB, OBJ, PLY, OFF, STL or XYZ file")->required();
+    add_scene_options(app, options.scene, options.light_units);
     auto* points =
         app.add_option("--points", options.sample.points, "Points to sample from the surface")->type_name("N");
     app.add_option("--spacing", options.sample.spacing, "Mean distance of points instead, world units")
@@ -50,10 +80,7 @@ LoadedPoints load_points(const LoadOptions& options, Job& job) {
     Stopwatch importing;
     const ProgressCallback progress = job.progress();
     report_progress(progress, "import", 0);
-    Input input =
-        read_input(options.file, {.scene = options.scene.empty() ? std::optional<std::string>() : options.scene,
-                                  .light_units = options.light_units,
-                                  .up = std::nullopt});
+    Input input = read_input(options.file, input_config(options.scene, options.light_units));
     loaded.scene = std::move(input.scene);
     job.warn(loaded.scene.warnings);
     loaded.lights.insert(loaded.lights.end(), loaded.scene.lights.begin(), loaded.scene.lights.end());
@@ -61,6 +88,10 @@ LoadedPoints load_points(const LoadOptions& options, Job& job) {
     loaded.info.source = loaded.scene.source;
     loaded.import_seconds = importing.seconds();
 
+    if (loaded.scene.instances.empty() && input.points) {
+        take_points(std::move(*input.points), options.file, loaded);
+        return loaded;
+    }
     Stopwatch sampling;
     SampleConfig sample = options.sample;
     sample.seed = job.options().seed;

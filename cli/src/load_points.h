@@ -23,6 +23,11 @@ struct LoadOptions {
     std::vector<std::string> lights;  ///< --light, not yet parsed
 };
 
+/// --scene and --light-units.
+void add_scene_options(CLI::App& app, std::string& scene, LightUnits& light_units);
+
+[[nodiscard]] InputConfig input_config(const std::string& scene, LightUnits light_units);
+
 void add_load_options(CLI::App& app, LoadOptions& options);
 
 struct LoadedPoints {

@@ -94,7 +94,7 @@ std::pair<int, int> parse_size(const std::string& size, double aspect) {
     return {static_cast<int>(std::clamp(std::round(width), 1.0, 16384.0)), height};
 }
 
-Camera choose_camera(const Scene& scene, const PointCloud& cloud, const std::string& wanted, Job& job) {
+Camera choose_camera(const Scene& scene, const Imath::Box3d& bounds, const std::string& wanted, Job& job) {
     if (!wanted.empty()) {
         const auto named = std::find_if(scene.cameras.begin(), scene.cameras.end(),
                                         [&](const Camera& camera) { return camera.name == wanted; });
@@ -106,7 +106,7 @@ Camera choose_camera(const Scene& scene, const PointCloud& cloud, const std::str
     }
     if (!scene.cameras.empty()) return scene.cameras.front();
     job.warn("no camera in the scene: one was placed that sees everything");
-    return place_camera(bounds_of(cloud));
+    return place_camera(bounds);
 }
 
 double choose_exposure(const std::optional<double>& wanted, const LitCloud& cloud) {
@@ -158,7 +158,7 @@ void Outputs::write(const LitCloud& cloud, const Scene& scene, OutputInfo info, 
             case OutputFormat::exr:
             case OutputFormat::png:
                 if (!picture) {
-                    const Camera camera = choose_camera(scene, cloud.points, options_.camera, job);
+                    const Camera camera = choose_camera(scene, bounds_of(cloud.points), options_.camera, job);
                     const auto [width, height] = parse_size(options_.size, camera.aspect);
                     picture = render_picture(cloud, camera, {.width = width, .height = height},
                                              scene.instances.empty() ? nullptr : &scene);

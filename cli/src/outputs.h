@@ -11,6 +11,8 @@
 #include <vmap/point_cloud.h>
 #include <vmap/scene.h>
 
+#include <Imath/ImathBox.h>
+
 #include <functional>
 #include <optional>
 #include <string>
@@ -36,8 +38,8 @@ void add_output_options(CLI::App& app, OutputOptions& options);
 /// - throws UsageError unless both are within 1 and 16384
 [[nodiscard]] std::pair<int, int> parse_size(const std::string& size, double aspect);
 
-/// The scene's camera by name or index, its first one, or one that sees everything, with a warning.
-[[nodiscard]] Camera choose_camera(const Scene& scene, const PointCloud& cloud, const std::string& wanted, Job& job);
+/// The scene's camera by name or index, its first one, or one that sees all of the bounds, with a warning.
+[[nodiscard]] Camera choose_camera(const Scene& scene, const Imath::Box3d& bounds, const std::string& wanted, Job& job);
 
 /// Exposure of pictures and display colours; `wanted` or an automatic one.
 [[nodiscard]] double choose_exposure(const std::optional<double>& wanted, const LitCloud& cloud);
