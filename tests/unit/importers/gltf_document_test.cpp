@@ -16,7 +16,6 @@
 namespace vmap::test {
 namespace {
 
-using testing::ElementsAre;
 using testing::HasSubstr;
 
 TEST(GltfDocument, ScenesAreChosenByNameOrIndex) {

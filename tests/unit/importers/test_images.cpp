@@ -37,6 +37,7 @@ std::string png_file(int width, int height, int color_type, int bit_depth, const
     const std::size_t row_size = png_get_rowbytes(png, info);
     std::vector<std::uint8_t> copy = samples;
     std::vector<png_bytep> rows;
+    rows.reserve(static_cast<std::size_t>(height));
     for (int y = 0; y < height; ++y) rows.push_back(copy.data() + static_cast<std::size_t>(y) * row_size);
     png_write_image(png, rows.data());
     png_write_end(png, info);
