@@ -12,5 +12,6 @@ namespace vmap {
 [[nodiscard]] Command add_info_command(CLI::App& program);
 [[nodiscard]] Command add_render_command(CLI::App& program);
 [[nodiscard]] Command add_export_command(CLI::App& program);
+[[nodiscard]] Command add_compare_command(CLI::App& program);
 
 }  // namespace vmap

@@ -55,9 +55,9 @@ int main_of(int argc, const char* const* argv) {
     program.footer(exit_codes);
 
     CommonOptions options;
-    const std::vector<Command> commands{add_light_command(program), add_sample_command(program),
-                                        add_info_command(program), add_render_command(program),
-                                        add_export_command(program)};
+    const std::vector<Command> commands{add_light_command(program),  add_sample_command(program),
+                                        add_info_command(program),   add_render_command(program),
+                                        add_export_command(program), add_compare_command(program)};
     for (const Command& command : commands) add_common_options(*command.app, options);
 
     try {

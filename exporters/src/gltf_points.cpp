@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "base64.h"
+#include <vmap/exporters/base64.h>
 #include "file_points.h"
 #include "row_stream.h"
 

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <reference/owen_sobol.h>
+#include <reference/content_key.h>
 #include <reference/reference_cache.h>
 #include <vmap/exporters/file_writer.h>
 
-#include <array>
 #include <cstdint>
-#include <cstring>
 #include <fstream>
-#include <iomanip>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <type_traits>
 
@@ -18,49 +14,6 @@ namespace {
 
 /// Counts up whenever values for the same question change.
 constexpr std::uint64_t tracer_version = 1;
-
-/// A hash of 128 bits over numbers in the order in which they are added.
-class ContentKey {
-public:
-    void add_bytes(const void* data, std::size_t size) {
-        add_word(size);
-        const auto* bytes = static_cast<const unsigned char*>(data);
-        for (std::size_t i = 0; i < size; i += 8) {
-            std::uint64_t word = 0;
-            std::memcpy(&word, bytes + i, std::min<std::size_t>(8, size - i));
-            add_word(word);
-        }
-    }
-    template <class T>
-        requires std::is_arithmetic_v<T> || std::is_enum_v<T>
-    void add(T value) {
-        add_bytes(&value, sizeof value);
-    }
-    template <class T>
-    void add(const Imath::Vec3<T>& value) {
-        add_bytes(&value, sizeof value);
-    }
-    void add(const Imath::C4f& value) { add_bytes(&value, sizeof value); }
-    template <class T>
-    void add_all(const std::vector<T>& values) {
-        add_bytes(values.data(), values.size() * sizeof(T));
-    }
-
-    [[nodiscard]] std::string text() const {
-        std::ostringstream stream;
-        stream << std::hex << std::setfill('0') << std::setw(16) << a_ << std::setw(16) << b_;
-        return stream.str();
-    }
-
-private:
-    void add_word(std::uint64_t word) {
-        a_ = mix_keys(a_, word);
-        b_ = mix_keys(b_ + word, a_);
-    }
-
-    std::uint64_t a_ = tracer_version;
-    std::uint64_t b_ = 0;
-};
 
 void add(ContentKey& key, const std::optional<TextureView>& view) {
     key.add(view.has_value());
@@ -116,6 +69,7 @@ void add(ContentKey& key, const Scene& scene) {
 
 std::string key_of(const Scene& scene, std::span<const ReferencePoint> points, const ReferenceConfig& config) {
     ContentKey key;
+    key.add(tracer_version);
     add(key, scene);
     for (const ReferencePoint& point : points) {
         key.add(point.position);

@@ -3,6 +3,7 @@
 #include <vmap/surface_shading.h>
 
 #include "room_builder.h"
+#include "surface_points.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -11,7 +12,6 @@
 #include <cmath>
 #include <functional>
 #include <numbers>
-#include <random>
 #include <vector>
 
 namespace vmap::reference {
@@ -21,8 +21,10 @@ using Imath::C3f;
 using Imath::V3d;
 using Imath::V3f;
 using std::numbers::pi;
+using test::face_of;
 using test::grey;
 using test::matte;
+using test::points_on;
 using test::RoomBuilder;
 
 constexpr float far = 1000;
@@ -63,36 +65,6 @@ std::vector<ReferencePoint> grid_of_points(const V3d& corner, double size, int c
     return points;
 }
 
-/// Points spread evenly over the fronts of all faces, and the area that each stands for.
-std::vector<ReferencePoint> points_on(const Scene& scene, std::size_t count, double& area_each) {
-    std::vector<double> areas;
-    std::vector<SurfacePlace> places;
-    double sum = 0;
-    for (std::size_t i = 0; i < scene.instances.size(); ++i)
-        for (std::size_t t = 0; t < scene.meshes[scene.instances[i].mesh].triangle_count(); ++t) {
-            sum += world_area_normal(scene, i, t).length() / 2;
-            areas.push_back(sum);
-            places.push_back({.instance = i, .triangle = t});
-        }
-    area_each = sum / static_cast<double>(count);
-    std::mt19937 random(7);
-    std::uniform_real_distribution<double> uniform;
-    std::vector<ReferencePoint> points;
-    for (std::size_t k = 0; k < count; ++k) {
-        const double at = (static_cast<double>(k) + uniform(random)) * area_each;
-        const std::size_t face =
-            std::min(static_cast<std::size_t>(std::lower_bound(areas.begin(), areas.end(), at) - areas.begin()),
-                     areas.size() - 1);
-        const auto [a, b, c] = world_triangle(scene, places[face].instance, places[face].triangle);
-        const double root = std::sqrt(uniform(random));
-        const double v = uniform(random);
-        points.push_back({.position = a * (1 - root) + b * (root * (1 - v)) + c * (root * v),
-                          .normal = world_area_normal(scene, places[face].instance, places[face].triangle).normalized(),
-                          .face = static_cast<std::uint32_t>(face)});
-    }
-    return points;
-}
-
 /// Power that the fronts emit, first channel.
 double emitted_power(const Scene& scene) {
     double sum = 0;
@@ -102,14 +74,6 @@ double emitted_power(const Scene& scene) {
             sum += pi * scene.materials[mesh.material].emission.x * world_area_normal(scene, i, t).length() / 2;
     }
     return sum;
-}
-
-double albedo_at(const Scene& scene, const ReferencePoint& point) {
-    std::size_t face = point.face;
-    std::size_t instance = 0;
-    while (face >= scene.meshes[scene.instances[instance].mesh].triangle_count())
-        face -= scene.meshes[scene.instances[instance++].mesh].triangle_count();
-    return scene.materials[scene.meshes[scene.instances[instance].mesh].material].base_color.r;
 }
 
 TEST(ReferenceTracer, FurnaceHasTheSameLightEverywhere) {
@@ -315,7 +279,8 @@ Absorbed absorbed_power(const Scene& scene, std::size_t count, const ReferenceCo
     double squares = 0;
     for (std::size_t i = 0; i < points.size(); ++i) {
         if (covered(points[i].position)) continue;
-        const double absorbed = (1 - albedo_at(scene, points[i])) * values[i].irradiance.x * area;
+        const double absorbed =
+            (1 - face_of(scene, points[i].face).material.base_color.r) * values[i].irradiance.x * area;
         sum += absorbed;
         squares += absorbed * absorbed;
     }
