@@ -61,6 +61,7 @@ protected:
 /// Positions in the world, whatever the origin.
 std::vector<V3d> world_positions(const PointCloud& cloud) {
     std::vector<V3d> positions;
+    positions.reserve(cloud.size());
     for (const Imath::V3f& position : cloud.positions) positions.push_back(cloud.origin + V3d(position));
     return positions;
 }
