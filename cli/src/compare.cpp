@@ -2,6 +2,7 @@
 /// \file
 /// vmap compare: how much a picture or a lit cloud differs from another one.
 #include "commands.h"
+#include "distinct_files.h"
 
 #include <vmap/compare/comparison.h>
 #include <vmap/compare/html_report.h>
@@ -51,6 +52,7 @@ std::string joined(const std::vector<std::string>& lines) {
 }
 
 void run_compare(const CompareOptions& options, Job& job) {
+    require_distinct_files({options.result, options.reference}, {options.html, options.json});
     std::optional<FileWriter> html;
     std::optional<FileWriter> json;
     if (!options.html.empty()) html.emplace(options.html);

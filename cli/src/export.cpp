@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// vmap export: scenes and lit points for other programs.
+#include "choice.h"
 #include "commands.h"
+#include "distinct_files.h"
 #include "load_points.h"
 #include "outputs.h"
 
@@ -62,6 +64,7 @@ void run_export(const ExportOptions& options, Job& job) {
         throw UsageError(options.output +
                          ": expected a name that ends in .pov (vmap light and vmap sample write .ply, "
                          ".glb, .gltf, .vdb, .exr and .png)");
+    require_distinct_files({options.file}, {options.output});
     const Input input = read_input(options.file, input_config(options.scene, options.light_units));
     job.warn(input.scene.warnings);
     if (!input.scene.instances.empty())
@@ -84,11 +87,11 @@ Command add_export_command(CLI::App& program) {
         ->type_name("FILE");
     add_scene_options(*app, options->scene, options->light_units);
     app->add_option("--up", options->up, "Axis that is up in the file")
-        ->transform(CLI::CheckedTransformer(std::map<std::string, UpAxis>{{"y", UpAxis::y}, {"z", UpAxis::z}}))
+        ->transform(choice(std::map<std::string, UpAxis>{{"y", UpAxis::y}, {"z", UpAxis::z}}))
         ->type_name("y|z")
         ->default_str("y");
     app->add_option("--preset", options->preset, "How much work POV-Ray's radiosity does")
-        ->transform(CLI::CheckedTransformer(std::map<std::string, PovPreset>{
+        ->transform(choice(std::map<std::string, PovPreset>{
             {"draft", PovPreset::draft}, {"normal", PovPreset::normal}, {"reference", PovPreset::reference}}))
         ->type_name("draft|normal|reference")
         ->default_str("normal");

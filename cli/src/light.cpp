@@ -2,6 +2,7 @@
 /// \file
 /// vmap light: the main job.
 #include "commands.h"
+#include "distinct_files.h"
 #include "load_points.h"
 #include "outputs.h"
 #include "report.h"
@@ -13,6 +14,8 @@
 #include <fmt/format.h>
 
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace vmap {
 namespace {
@@ -44,6 +47,9 @@ double total_area(const PointCloud& cloud) {
 
 void run_light(LightOptions options, Job& job) {
     const Stopwatch total;
+    std::vector<std::string> written = options.output.paths;
+    written.push_back(options.report);
+    require_distinct_files({options.load.file}, written);
     Outputs outputs(options.output);
     std::optional<FileWriter> report_file;
     if (!options.report.empty()) report_file.emplace(options.report);

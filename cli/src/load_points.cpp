@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "load_points.h"
 
+#include "choice.h"
 #include "parse_values.h"
 #include "stopwatch.h"
 
@@ -34,7 +35,7 @@ void add_scene_options(CLI::App& app, std::string& scene, LightUnits& light_unit
     app.add_option("--light-units", light_units,
                    "glTF: what the numbers of lights mean: compat (W/sr and W/m^2 as they stand), spec (photometric), "
                    "raw (Blender's watts)")
-        ->transform(CLI::CheckedTransformer(std::map<std::string, LightUnits>{
+        ->transform(choice(std::map<std::string, LightUnits>{
             {"compat", LightUnits::compat}, {"spec", LightUnits::spec}, {"raw", LightUnits::raw}}))
         ->type_name("compat|spec|raw")
         ->default_str("compat");
@@ -48,23 +49,28 @@ InputConfig input_config(const std::string& scene, LightUnits light_units) {
 void add_load_options(CLI::App& app, LoadOptions& options) {
     app.add_option("FILE", options.file, "glTF, GLB, OBJ, PLY, OFF, STL or XYZ file")->required();
     add_scene_options(app, options.scene, options.light_units);
-    auto* points =
-        app.add_option("--points", options.sample.points, "Points to sample from the surface")->type_name("N");
+    auto* points = app.add_option("--points", options.sample.points, "Points to sample from the surface")
+                       ->check(CLI::Validator(  // the parser would take -1 for 2^64 - 1
+                           [](const std::string& text) {
+                               return text.starts_with('-') ? "expected 1 or more, not " + text : std::string();
+                           },
+                           ""))
+                       ->type_name("N");
     app.add_option("--spacing", options.sample.spacing, "Mean distance of points instead, world units")
         ->excludes(points)
         ->type_name("S");
     app.add_option("--pattern", options.sample.pattern, "How points are spread")
-        ->transform(CLI::CheckedTransformer(std::map<std::string, SamplePattern>{
-            {"blue-noise", SamplePattern::blue_noise}, {"stratified", SamplePattern::stratified}}))
+        ->transform(choice(std::map<std::string, SamplePattern>{{"blue-noise", SamplePattern::blue_noise},
+                                                                {"stratified", SamplePattern::stratified}}))
         ->type_name("blue-noise|stratified")
         ->default_str("blue-noise");
     app.add_option("--normals", options.sample.normals, "Normals that irradiance is defined over")
-        ->transform(CLI::CheckedTransformer(std::map<std::string, SampleNormals>{
-            {"geometric", SampleNormals::geometric}, {"shading", SampleNormals::shading}}))
+        ->transform(choice(std::map<std::string, SampleNormals>{{"geometric", SampleNormals::geometric},
+                                                                {"shading", SampleNormals::shading}}))
         ->type_name("geometric|shading")
         ->default_str("geometric");
     app.add_option("--sides", options.sample.sides, "Sides of the surface that get points")
-        ->transform(CLI::CheckedTransformer(std::map<std::string, SampleSides>{
+        ->transform(choice(std::map<std::string, SampleSides>{
             {"auto", SampleSides::automatic}, {"front", SampleSides::front}, {"both", SampleSides::both}}))
         ->type_name("auto|front|both")
         ->default_str("auto");
@@ -96,7 +102,11 @@ LoadedPoints load_points(const LoadOptions& options, Job& job) {
     SampleConfig sample = options.sample;
     sample.seed = job.options().seed;
     SampleReport report;
-    loaded.cloud.points = sample_surface(loaded.scene, sample, progress, &report);
+    try {
+        loaded.cloud.points = sample_surface(loaded.scene, sample, progress, &report);
+    } catch (const UsageError& error) {
+        throw UsageError(options.file + ": " + error.what());
+    }
     job.warn(report.warnings);
     loaded.sample_seconds = sampling.seconds();
     return loaded;

@@ -48,6 +48,17 @@ int run(const Command& command, const CommonOptions& options, Interruption& inte
     }
 }
 
+/// A word where a command should stand; the parser itself would only say that one is required.
+std::optional<std::string> unknown_command(const CLI::App& program, int argc, const char* const* argv) {
+    if (argc < 2 || *argv[1] == '-') return {};
+    std::string names;
+    for (const CLI::App* app : program.get_subcommands([](const CLI::App*) { return true; })) {
+        if (app->get_name() == argv[1]) return {};
+        names += (names.empty() ? "" : ", ") + app->get_name();
+    }
+    return fmt::format("'{}' is not a command; expected one of {}", argv[1], names);
+}
+
 int main_of(int argc, const char* const* argv) {
     CLI::App program{"Lights scenes as oriented points through a visibility map."};
     program.set_version_flag("--version", std::string("vmap ") + version);
@@ -60,6 +71,7 @@ int main_of(int argc, const char* const* argv) {
                                         add_export_command(program), add_compare_command(program)};
     for (const Command& command : commands) add_common_options(*command.app, options);
 
+    if (const auto message = unknown_command(program, argc, argv)) return fail(ExitCode::usage, *message);
     try {
         program.parse(argc, argv);
     } catch (const CLI::Success& success) {

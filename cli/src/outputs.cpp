@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "outputs.h"
 
+#include "choice.h"
+
 #include <vmap/error.h>
 #include <vmap/exporters/camera_placement.h>
 #include <vmap/exporters/exr.h>
@@ -19,7 +21,6 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
-#include <set>
 
 namespace vmap {
 namespace {
@@ -60,10 +61,10 @@ void add_output_options(CLI::App& app, OutputOptions& options) {
         ->allow_extra_args(false)
         ->required();
     app.add_option("--up", options.up, "Axis that is up in the files; default: y for glTF, z for PLY and VDB")
-        ->transform(CLI::CheckedTransformer(std::map<std::string, UpAxis>{{"y", UpAxis::y}, {"z", UpAxis::z}}))
+        ->transform(choice(std::map<std::string, UpAxis>{{"y", UpAxis::y}, {"z", UpAxis::z}}))
         ->type_name("y|z");
     app.add_option("--vdb", options.vdb_points, "VDB: a grid of irradiance or the points themselves")
-        ->transform(CLI::CheckedTransformer(std::map<std::string, bool>{{"grid", false}, {"points", true}}))
+        ->transform(choice(std::map<std::string, bool>{{"grid", false}, {"points", true}}))
         ->type_name("grid|points")
         ->default_str("grid");
     app.add_option("--voxel", options.voxel, "VDB grid: edge of a voxel, world units; default: twice the spacing")
@@ -114,12 +115,10 @@ double choose_exposure(const std::optional<double>& wanted, const LitCloud& clou
 }
 
 Outputs::Outputs(const OutputOptions& options) : options_(options) {
-    std::set<std::string> names;
+    static_cast<void>(parse_size(options_.size, 1));  // found out before the work, not after it
     std::vector<OutputFormat> formats;
-    for (const std::string& path : options_.paths) {
-        if (!names.insert(path).second) throw UsageError(printable(path) + ": named twice as an output");
-        formats.push_back(format_of(path));
-    }
+    formats.reserve(options_.paths.size());
+    for (const std::string& path : options_.paths) formats.push_back(format_of(path));
     for (std::size_t i = 0; i < formats.size(); ++i) outputs_.push_back({formats[i], FileWriter(options_.paths[i])});
 }
 

@@ -47,7 +47,7 @@ void add_output_options(CLI::App& app, OutputOptions& options);
 class Outputs {
 public:
     /// Opens every file, so that one that cannot be written is found out before the work.
-    /// - throws UsageError for an unknown extension or a name that occurs twice, FileError for what cannot be written
+    /// - throws UsageError for an unknown extension or size, FileError for what cannot be written
     explicit Outputs(const OutputOptions& options);
 
     [[nodiscard]] bool needs_picture() const;

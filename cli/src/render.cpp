@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
 /// vmap render: a picture of lit points.
+#include "choice.h"
 #include "commands.h"
+#include "distinct_files.h"
 #include "load_points.h"
 #include "outputs.h"
 #include "parse_values.h"
@@ -57,6 +59,7 @@ bool is_file(const std::string& text) {
 }
 
 void run_render(const RenderOptions& options, Job& job) {
+    require_distinct_files({options.points, options.scene, options.camera}, options.outputs);
     std::vector<FileWriter> files;
     for (const std::string& path : options.outputs) {
         if (!path.ends_with(".exr") && !path.ends_with(".png"))
@@ -129,11 +132,10 @@ Command add_render_command(CLI::App& program) {
         ->check(CLI::PositiveNumber)
         ->type_name("X");
     app->add_option("--show", options->content, "What pixels hold")
-        ->transform(
-            CLI::CheckedTransformer(std::map<std::string, PictureContent>{{"radiance", PictureContent::radiance},
-                                                                          {"irradiance", PictureContent::irradiance},
-                                                                          {"albedo", PictureContent::albedo},
-                                                                          {"normals", PictureContent::normals}}))
+        ->transform(choice(std::map<std::string, PictureContent>{{"radiance", PictureContent::radiance},
+                                                                 {"irradiance", PictureContent::irradiance},
+                                                                 {"albedo", PictureContent::albedo},
+                                                                 {"normals", PictureContent::normals}}))
         ->type_name("radiance|irradiance|albedo|normals")
         ->default_str("radiance");
     return {app, [options](Job& job) { run_render(*options, job); }};

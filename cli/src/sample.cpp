@@ -2,12 +2,15 @@
 /// \file
 /// vmap sample: a scene as points without light.
 #include "commands.h"
+#include "distinct_files.h"
 #include "load_points.h"
 #include "outputs.h"
 #include "report.h"
 #include "stopwatch.h"
 
 #include <optional>
+#include <string>
+#include <vector>
 
 namespace vmap {
 namespace {
@@ -20,6 +23,9 @@ struct SampleOptions {
 
 void run_sample(const SampleOptions& options, Job& job) {
     const Stopwatch total;
+    std::vector<std::string> written = options.output.paths;
+    written.push_back(options.report);
+    require_distinct_files({options.load.file}, written);
     Outputs outputs(options.output);
     std::optional<FileWriter> report_file;
     if (!options.report.empty()) report_file.emplace(options.report);

@@ -11,11 +11,13 @@
 #include <png.h>
 
 #include <array>
+#include <cerrno>
 #include <cmath>
 #include <cstdint>
 #include <fstream>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 namespace vmap {
@@ -33,7 +35,7 @@ enum class PictureFormat { exr, png, other };
 PictureFormat format_of(const std::filesystem::path& file) {
     if (std::filesystem::is_directory(file)) fail(file, "is a folder, expected a picture or a cloud");
     std::ifstream stream(file, std::ios::binary);
-    if (!stream) fail(file, "cannot be opened");
+    if (!stream) fail(file, "cannot open: " + std::generic_category().message(errno));
     std::array<char, 8> start{};
     stream.read(start.data(), start.size());
     const std::string_view bytes(start.data(), static_cast<std::size_t>(stream.gcount()));

@@ -174,17 +174,19 @@ public:
         if (finished_) return;
         if (buffer_) buffer_->flush();
         if (durability_ == Durability::synced && !direct_ && ::fsync(file_.get()) != 0) fail(path_, "sync", errno);
-        if (!direct_ && temporary_.empty()) name_temporary();
-        if (const int error = file_.close(); error != 0) fail(path_, "close", error);
         finished_ = true;
     }
 
     void commit() {
         finish();
-        if (direct_ || committed_) return;
+        if (committed_) return;
+        // Named only now: a process that ends between finish() and commit() leaves nothing.
+        if (!direct_ && temporary_.empty()) name_temporary();
+        if (const int error = file_.close(); error != 0) fail(path_, "close", error);
+        committed_ = true;
+        if (direct_) return;
         if (::rename(temporary_.c_str(), target_.c_str()) != 0) fail(path_, "rename the finished file", errno);
         temporary_.clear();
-        committed_ = true;
         if (durability_ == Durability::synced) sync_folder();
     }
 

@@ -38,7 +38,7 @@ public:
 
     void write(const void* data, std::size_t size);
 
-    /// Flushes, syncs and closes without touching the target, so that several files can appear together.
+    /// Flushes and syncs without touching the target, so that several files can appear together.
     void finish();
 
     /// Finishes if need be and puts the file under its name.
