@@ -19,6 +19,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <utility>
 
 namespace vmap {
@@ -52,6 +53,20 @@ MeshFile read_mesh_file(InputFormat format, std::string_view content, const fs::
     }
 }
 
+/// Foreign files may hold normals of any length, and zeros for normals that were not found.
+void make_unit_or_leave_out(std::vector<Imath::V3f>& normals, Warnings& warnings) {
+    for (Imath::V3f& normal : normals) {
+        const Imath::V3d exact(normal);
+        const double length = exact.length();
+        if (!(length > 0) || !std::isfinite(length)) {
+            warnings.add("some normals of points are zero or not finite: no normal is read");
+            normals.clear();
+            return;
+        }
+        normal = Imath::V3f(exact / length);
+    }
+}
+
 /// The vertices as points, turned into the world.
 PointFile points_from_soup(MeshFile& file) {
     PointFile points = file.points ? std::move(*file.points) : PointFile();
@@ -60,6 +75,7 @@ PointFile points_from_soup(MeshFile& file) {
     cloud.origin = world_from_file(up, cloud.origin + file.soup.positions.origin);
     cloud.positions = std::move(file.soup.positions.offsets);
     cloud.normals = std::move(file.soup.normals);
+    if (!points.ours) make_unit_or_leave_out(cloud.normals, file.warnings);
     for (Imath::V3f& position : cloud.positions) position = world_from_file(up, position);
     for (Imath::V3f& normal : cloud.normals) normal = world_from_file(up, normal);
     if (cloud.albedo.empty()) cloud.albedo = std::move(file.soup.colors);

@@ -43,6 +43,8 @@ public:
         for (; !words_.at_end(); words_.next_line()) read_statement();
         if (positions_.empty()) throw BrokenContent("the file holds no vertices");
         check_largest(corners_, positions_.size(), "vertex");
+        leave_out_if_absent(texcoords_, file_.soup.texcoords.size(), "texture coordinates");
+        leave_out_if_absent(normals_, file_.soup.normals.size(), "normals");
         check_largest(texcoords_, file_.soup.texcoords.size(), "texture coordinate");
         check_largest(normals_, file_.soup.normals.size(), "normal");
         finish();
@@ -191,6 +193,13 @@ private:
             to.largest_line = words_.line();
         }
         to.any = true;
+    }
+
+    /// Some programs write the indices of normals and leave the normals out.
+    void leave_out_if_absent(CornerIndices& indices, std::size_t count, const char* of) {
+        if (!indices.any || count > 0) return;
+        file_.warnings.add(fmt::format("faces use {}, but the file has none", of));
+        indices = {};
     }
 
     static void check_largest(const CornerIndices& indices, std::size_t count, const char* of) {

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 #include <span>
 
@@ -128,6 +129,10 @@ MeshFile read_ply(std::string_view text) {
         else
             elements.skip(element);
     }
+    // In binary data empty faces are what a wrong count of vertices looks like.
+    const std::vector<std::uint32_t>& sizes = file.soup.polygon_sizes;
+    if (header.encoding != PlyEncoding::ascii && std::count(sizes.begin(), sizes.end(), 0U) > 0)
+        throw BrokenContent("holds faces of 0 vertices, expected 3 or more");
     if (elements.left_over() > 0) file.warnings.add("there is more in the file than its header says: not read");
     warn_of_textures(header, file);
     if (!file.soup.corners.empty()) file.points.reset();

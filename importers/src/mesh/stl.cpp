@@ -10,6 +10,7 @@
 #include <array>
 #include <bit>
 #include <cctype>
+#include <cmath>
 #include <cstring>
 #include <map>
 #include <utility>
@@ -24,6 +25,7 @@ static_assert(std::endian::native == std::endian::little, "binary STL is little-
 
 constexpr std::size_t header_size = 80;
 constexpr std::size_t facet_size = 12 * sizeof(float) + 2;
+constexpr const char* no_normal = "facet normals that are no numbers: the winding says where the front is";
 constexpr std::size_t first_facet = header_size + sizeof(std::uint32_t);
 
 std::uint32_t facet_count(std::string_view bytes) {
@@ -73,6 +75,8 @@ MeshFile read_binary(std::string_view bytes) {
     for (std::uint32_t i = 0; i < count; ++i, facet += facet_size) {
         float values[12];
         std::memcpy(values, facet, sizeof values);
+        if (!std::all_of(values, values + 3, [](float value) { return std::isfinite(value); }))
+            file.warnings.add(no_normal);
         for (int corner = 1; corner <= 3; ++corner) {
             const V3d position(values[3 * corner], values[3 * corner + 1], values[3 * corner + 2]);
             for (int axis = 0; axis < 3; ++axis)
@@ -103,16 +107,15 @@ public:
             static_cast<void>(words_.word());
             words_.next_line();
         }
-        MeshFile file;
-        file.format = "STL, text";
-        finish(file, positions_);
-        return file;
+        file_.format = "STL, text";
+        finish(file_, positions_);
+        return std::move(file_);
     }
 
 private:
     void read_facet() {
         expect("facet");
-        words_.next_line();  // the normal, often "nan nan nan"
+        read_normal();
         expect("outer");
         expect("loop");
         for (int corner = 0; corner < 3; ++corner) {
@@ -125,6 +128,15 @@ private:
         expect("endfacet");
     }
 
+    /// The winding counts, not the normal, which is often "nan nan nan".
+    void read_normal() {
+        static_cast<void>(words_.word_on_line());  // "normal"
+        bool finite = true;
+        for (std::string_view word = words_.word_on_line(); !word.empty(); word = words_.word_on_line())
+            finite = finite && std::isfinite(number_from_text(word).value_or(NAN));
+        if (!finite) file_.warnings.add(no_normal);
+    }
+
     void expect(std::string_view keyword) {
         const std::string_view found = words_.word();
         if (equals_ignoring_case(found, keyword)) return;
@@ -133,6 +145,7 @@ private:
     }
 
     TextCursor words_;
+    MeshFile file_;
     std::vector<V3d> positions_;
 };
 
