@@ -68,7 +68,8 @@ VisibilityMap build_exhaustive(const Tree& tree, const ProgressCallback& progres
     const std::vector<LeafRange> ranges = leaf_ranges(tree);
     const PairSplit split(tree);
 
-    std::vector<NodePair> links;
+    const ProgressCallback silent;
+    LinkCollector links(silent, 1);
     std::vector<NodePair> open = sibling_pairs(tree);
     while (!open.empty()) {
         const NodePair pair = open.back();
@@ -78,11 +79,11 @@ VisibilityMap build_exhaustive(const Tree& tree, const ProgressCallback& progres
         std::size_t seen = 0;
         for (std::uint32_t row = rows.begin; row < rows.end; ++row) seen += matrix.count(row, columns);
         if (seen == static_cast<std::size_t>(rows.size()) * columns.size())
-            links.push_back(pair);
+            links.link(pair);
         else if (seen > 0)
             split.for_each_part(tree, pair, [&](const NodePair& part) { open.push_back(part); });
     }
-    return collect_links(tree.nodes.size(), {links});
+    return links.collect(tree.nodes.size(), VisibilityRule::centroid);
 }
 
 }  // namespace vmap

@@ -9,11 +9,9 @@
 #include <vmap/leaf_ranges.h>
 #include <vmap/leaf_visibility.h>
 
-#include <tbb/enumerable_thread_specific.h>
 #include <tbb/task_group.h>
 
 #include <algorithm>
-#include <mutex>
 #include <numeric>
 
 namespace vmap {
@@ -26,23 +24,22 @@ class FastBuilder {
 public:
     FastBuilder(const Tree& tree, const ProgressCallback& progress)
         : tree_(tree),
-          progress_(progress),
           visibility_(tree),
           arrays_(visibility_),
           occluders_(visibility_),
           ranges_(leaf_ranges(tree)),
           bounds_(bound_nodes(visibility_, ranges_)),
-          split_(tree) {}
+          split_(tree),
+          links_(progress, std::uint64_t{tree.leaves.size()} * tree.leaves.size() / 2) {}
 
     VisibilityMap run() {
         Candidates all{std::vector<std::uint32_t>(occluders_.walls.size()), DiscList(occluders_.discs)};
         std::iota(all.walls.begin(), all.walls.end(), 0U);
         const std::vector<NodePair> siblings = sibling_pairs(tree_);
-        for (const NodePair& pair : siblings) all_pairs_ += leaf_pairs(pair);
         tbb::task_group tasks;
         for (const NodePair& pair : siblings) {
             const auto decide_pair = [this, &all, pair] {
-                if (decide(pair, all, false) == PairStatus::visible) link(pair);
+                if (decide(pair, all, false) == PairStatus::visible) links_.link(pair);
             };
             if (leaf_pairs(pair) >= least_task_pairs)
                 tasks.run(decide_pair);
@@ -50,9 +47,7 @@ public:
                 decide_pair();
         }
         tasks.wait();
-        std::vector<std::vector<NodePair>> links;
-        for (Share& share : shares_) links.push_back(std::move(share.links));
-        return collect_links(tree_.nodes.size(), links);
+        return links_.collect(tree_.nodes.size(), VisibilityRule::centroid);
     }
 
 private:
@@ -68,23 +63,8 @@ private:
         return std::uint64_t{ranges_[pair.first].size()} * ranges_[pair.second].size();
     }
 
-    /// What one thread has found.
-    struct Share {
-        std::vector<NodePair> links;
-        std::uint64_t decided_pairs = 0;  ///< of leaves, not yet reported
-    };
-
-    void link(const NodePair& pair) { shares_.local().links.push_back(pair); }
-
-    /// Called once for every pair of leaves, in large portions.
     PairStatus done(const NodePair& pair, PairStatus status) {
-        std::uint64_t& decided = shares_.local().decided_pairs;
-        decided += leaf_pairs(pair);
-        if (decided > all_pairs_ / 200) {
-            const std::scoped_lock lock(progress_mutex_);
-            decided_pairs_ += std::exchange(decided, 0);
-            report_progress(progress_, "vmap", static_cast<double>(decided_pairs_) / static_cast<double>(all_pairs_));
-        }
+        links_.count_decided(leaf_pairs(pair));
         return status;
     }
 
@@ -157,7 +137,7 @@ private:
         if (any == 0) return PairStatus::invisible;
         if (all == mask) return PairStatus::visible;
         split_.for_each_part(tree_, pair, [&](const NodePair& part) {
-            if (link_block(part, block) == PairStatus::visible) link(part);
+            if (link_block(part, block) == PairStatus::visible) links_.link(part);
         });
         return PairStatus::partial;
     }
@@ -170,22 +150,18 @@ private:
         if (all(PairStatus::visible)) return PairStatus::visible;
         if (all(PairStatus::invisible)) return PairStatus::invisible;
         for (std::size_t i = 0; i < parts.size(); ++i)
-            if (found[i] == PairStatus::visible) link(parts[i]);
+            if (found[i] == PairStatus::visible) links_.link(parts[i]);
         return PairStatus::partial;
     }
 
     const Tree& tree_;
-    const ProgressCallback& progress_;
     LeafVisibility visibility_;
     LeafArrays arrays_;
     Occluders occluders_;
     std::vector<LeafRange> ranges_;
     std::vector<NodeBounds> bounds_;
     PairSplit split_;
-    tbb::enumerable_thread_specific<Share> shares_;
-    std::uint64_t all_pairs_ = 0;
-    std::uint64_t decided_pairs_ = 0;
-    std::mutex progress_mutex_;
+    LinkCollector links_;
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include <vmap/leaf_ranges.h>
 #include <vmap/leaf_visibility.h>
+#include <vmap/visibility_map.h>
 
 #include <Imath/ImathBox.h>
 #include <Imath/ImathVec.h>
@@ -41,8 +42,6 @@ struct NodeBounds {
 };
 
 [[nodiscard]] std::vector<NodeBounds> bound_nodes(const LeafVisibility& leaves, const std::vector<LeafRange>& ranges);
-
-enum class Facing : std::uint8_t { all, none, some };
 
 /// How many pairs of leaves of two nodes face each other.
 [[nodiscard]] Facing facing_of(const LeafVisibility& leaves, const NodeBounds& a, const NodeBounds& b);

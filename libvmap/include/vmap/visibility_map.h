@@ -29,16 +29,31 @@ enum class PairStatus : std::uint8_t {
     partial     ///< neither
 };
 
+/// How many pairs of what two nodes hold (leaves or points) face each other.
+enum class Facing : std::uint8_t { all, none, some };
+
 /// Links between nodes of one tree. A link joins two nodes that see each other completely, at the highest level: each
-/// pair of leaves that see each other is under exactly one link, and no other pair is under any.
+/// pair of leaves that see each other is under exactly one link, and no other pair is under any. Where rule `patch`
+/// stops early the first half holds for the pairs that it looked at.
 struct VisibilityMap {
     VisibilityRule rule = VisibilityRule::centroid;
     std::vector<std::uint64_t> first_link;  ///< of each node in partners, and the end: nodes + 1
     std::vector<std::uint32_t> partners;    ///< nodes; every link stands here twice, once for either end
 
+    /// Rule `patch` only, laid out like the links: pairs of nodes that see nothing of each other because patches lie
+    /// between them, at the highest level. What is under neither a link nor one of these, and faces, is partial.
+    std::vector<std::uint64_t> first_hidden;
+    std::vector<std::uint32_t> hidden;
+
     /// The nodes that a node is linked with, ascending.
     [[nodiscard]] std::span<const std::uint32_t> links_of(std::uint32_t node) const {
         return std::span(partners).subspan(first_link[node], first_link[node + 1] - first_link[node]);
+    }
+
+    /// The nodes that are hidden from a node, ascending.
+    [[nodiscard]] std::span<const std::uint32_t> hidden_from(std::uint32_t node) const {
+        if (first_hidden.empty()) return {};
+        return std::span(hidden).subspan(first_hidden[node], first_hidden[node + 1] - first_hidden[node]);
     }
 
     /// Links as ordered pairs, the way the seed counts them: twice the number of linked pairs.
