@@ -36,7 +36,7 @@ public:
         const DiscList all(all_discs());
         tbb::task_group tasks;
         for (const NodePair& pair : sibling_pairs(tree_))
-            run_or_do(tasks, pair, [this, &all, pair] { keep(pair, decide(pair, all)); });
+            run_or_do(tasks, pair, [this, &all, pair] { keep(pair, decide(pair, Facing::some, all)); });
         tasks.wait();
         return links_.collect(tree_.nodes.size(), VisibilityRule::patch);
     }
@@ -46,7 +46,7 @@ private:
         TurnedBox unit;
         unit.center = V3f(box.center * scale_);
         for (std::size_t axis = 0; axis < 3; ++axis)
-            unit.half_axes[axis] = V3f(box.axes[axis] * (box.half[static_cast<int>(axis)] * scale_));
+            unit.half_axes[axis] = V3f(box.axes[axis] * ((box.half[static_cast<int>(axis)] + visibility_.box_growth()) * scale_));
         return unit;
     }
 
@@ -90,21 +90,22 @@ private:
         return outcome;
     }
 
-    PatchOutcome decide(const NodePair& pair, const DiscList& candidates) {
-        if (pairs_.averted(pair)) return done(pair, PatchOutcome::averted);
+    PatchOutcome decide(const NodePair& pair, Facing parent, const DiscList& candidates) {
+        const Facing facing = pairs_.facing(pair, parent);
+        if (facing == Facing::none) return done(pair, PatchOutcome::averted);
         DiscList left(candidates.size());
         static_cast<void>(cull_discs(candidates, boxes_[pair.first], boxes_[pair.second], false, left));
         std::vector<std::uint32_t> patches(left.size());
         for (std::size_t i = 0; i < left.size(); ++i)
             patches[i] = std::bit_cast<std::uint32_t>(left.field(DiscList::leaf)[i]);
-        if (const auto outcome = pairs_.decide(pair, patches)) return done(pair, *outcome);
+        if (const auto outcome = pairs_.decide(pair, facing, patches)) return done(pair, *outcome);
 
         std::vector<NodePair> parts;
         split_.for_each_part(tree_, pair, [&](const NodePair& part) { parts.push_back(part); });
         std::vector<PatchOutcome> found(parts.size());
         tbb::task_group tasks;
         for (std::size_t i = 0; i < parts.size(); ++i)
-            run_or_do(tasks, parts[i], [this, &found, &parts, &left, i] { found[i] = decide(parts[i], left); });
+            run_or_do(tasks, parts[i], [this, &found, &parts, &left, facing, i] { found[i] = decide(parts[i], facing, left); });
         tasks.wait();
         const PatchOutcome joined = PatchPairs::join(found);
         if (joined == PatchOutcome::partial)

@@ -40,20 +40,22 @@ private:
         for (std::uint32_t i = 0; i < own.child_count; ++i)
             for (std::uint32_t j = i + 1; j < own.child_count; ++j) {
                 const NodePair pair{own.first_child + i, own.first_child + j};
-                keep(links_, pair, node_to_node_visibility(pair));
+                keep(links_, pair, node_to_node_visibility(pair, Facing::some));
             }
         for (std::uint32_t c = 0; c < own.child_count; ++c) octree_visibility(own.first_child + c);
     }
 
     /// The seed's NodeToNodeVisibility: links all descendants of the two, short of the two themselves.
-    PatchOutcome node_to_node_visibility(const NodePair& pair) {
-        if (pairs_.averted(pair)) return PatchOutcome::averted;
-        if (const auto outcome = walks_ ? pairs_.decide(pair, near(pair)) : pairs_.decide(pair, all_)) return *outcome;
+    PatchOutcome node_to_node_visibility(const NodePair& pair, Facing parent) {
+        const Facing facing = pairs_.facing(pair, parent);
+        if (facing == Facing::none) return PatchOutcome::averted;
+        const std::vector<std::uint32_t> found_near = walks_ ? near(pair) : std::vector<std::uint32_t>();
+        if (const auto outcome = pairs_.decide(pair, facing, walks_ ? found_near : all_)) return *outcome;
         std::vector<NodePair> parts;
         std::vector<PatchOutcome> found;
         split_.for_each_part(tree_, pair, [&](const NodePair& part) {
             parts.push_back(part);
-            found.push_back(node_to_node_visibility(part));
+            found.push_back(node_to_node_visibility(part, facing));
         });
         const PatchOutcome joined = PatchPairs::join(found);
         if (joined == PatchOutcome::partial)
@@ -72,9 +74,9 @@ private:
         for (int axis = 0; axis < 3; ++axis) {
             Imath::V3f unit(0);
             unit[axis] = 1;
-            around.at(static_cast<std::size_t>(2 * axis)) = {unit, static_cast<float>(box.max[axis] + visibility_.eps())};
+            around.at(static_cast<std::size_t>(2 * axis)) = {unit, static_cast<float>(box.max[axis] + 2 * visibility_.box_growth())};
             around.at(static_cast<std::size_t>(2 * axis + 1)) = {-unit,
-                                                                 static_cast<float>(visibility_.eps() - box.min[axis])};
+                                                                 static_cast<float>(2 * visibility_.box_growth() - box.min[axis])};
         }
         visibility_.bvh().polygons_in(around, found);
         return found;

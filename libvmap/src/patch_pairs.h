@@ -27,35 +27,38 @@ public:
     PatchPairs(const PatchVisibility& visibility, std::uint32_t few_patches)
         : visibility_(visibility), few_patches_(few_patches) {}
 
-    [[nodiscard]] bool averted(const NodePair& pair) const {
-        return visibility_.facing(pair.first, pair.second) == Facing::none;
+    /// How far the points of a pair face each other.
+    ///
+    /// - parent: the same of the pair that it is a part of
+    [[nodiscard]] Facing facing(const NodePair& pair, Facing parent) const {
+        return parent == Facing::all ? parent : visibility_.facing(pair.first, pair.second);
     }
 
     /// The outcome of a pair that is not averted, or none when it is to be split.
     ///
     /// - candidates: at least all patches that lie anywhere between the two
-    [[nodiscard]] std::optional<PatchOutcome> decide(const NodePair& pair,
+    [[nodiscard]] std::optional<PatchOutcome> decide(const NodePair& pair, Facing facing,
                                                      std::span<const std::uint32_t> candidates) const {
-        const Tree& tree = visibility_.tree();
-        const TreeNode& first = tree.nodes[pair.first];
-        const TreeNode& second = tree.nodes[pair.second];
+        const auto [a, b] = pair;
+        const TreeNode& first = visibility_.tree().nodes[a];
+        const TreeNode& second = visibility_.tree().nodes[b];
         if (first.patch == no_index || second.patch == no_index) return std::nullopt;
-        const bool facing = visibility_.facing(pair.first, pair.second) == Facing::all;
         std::size_t entered = 0;
-        if (facing) {
-            const PatchShaft shaft = visibility_.shaft(pair.first, pair.second);
+        for (const std::uint32_t k : candidates) {
+            if (!visibility_.crosses_middle(k, a, b)) continue;
+            if (visibility_.covers(k, a, b)) return PatchOutcome::hidden;
+            ++entered;
+        }
+        if (facing == Facing::all && entered <= few_patches_) {
+            const PatchShaft shaft = visibility_.shaft(a, b);
             for (const std::uint32_t k : candidates) {
-                if (!visibility_.enters(k, pair.first, pair.second, shaft)) continue;
-                if (visibility_.covers(k, pair.first, pair.second)) return PatchOutcome::hidden;
-                ++entered;
+                if (visibility_.crosses_middle(k, a, b) || !visibility_.enters(k, a, b, shaft)) continue;
+                if (++entered > few_patches_) break;
             }
             if (entered == 0) return PatchOutcome::visible;
-        } else {
-            for (const std::uint32_t k : candidates)
-                if (visibility_.covers(k, pair.first, pair.second)) return PatchOutcome::hidden;
+            if (entered <= few_patches_) return PatchOutcome::partial;
         }
-        const bool few = facing && entered <= few_patches_;
-        if (few || (first.is_leaf() && second.is_leaf())) return PatchOutcome::partial;
+        if (first.is_leaf() && second.is_leaf()) return PatchOutcome::partial;
         return std::nullopt;
     }
 

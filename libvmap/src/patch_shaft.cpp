@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 namespace vmap {
@@ -21,52 +22,62 @@ struct Contour {
 
 }  // namespace
 
-std::array<V3d, 8> FramedBox::corners() const {
-    std::array<V3d, 8> result;
-    for (std::size_t i = 0; i < result.size(); ++i)
-        result[i] = center + axes[0] * ((i & 1) != 0 ? half.x : -half.x) + axes[1] * ((i & 2) != 0 ? half.y : -half.y) +
-                    axes[2] * ((i & 4) != 0 ? half.z : -half.z);
-    return result;
+void FramedBox::find_corners() {
+    corner_count = half.z > 0 ? 8 : 4;
+    for (std::size_t i = 0; i < corner_count; ++i)
+        all_corners[i] = center + axes[0] * ((i & 1) != 0 ? half.x : -half.x) +
+                         axes[1] * ((i & 2) != 0 ? half.y : -half.y) + axes[2] * ((i & 4) != 0 ? half.z : -half.z);
 }
 
-PatchShaft::PatchShaft(const FramedBox& a, const FramedBox& b, double growth) {
-    add_sides(a, b, growth);
-    add_sides(b, a, growth);
+PatchShaft::PatchShaft(const FramedBox& a, const FramedBox& b) {
+    add_sides(a, b);
+    add_sides(b, a);
 }
 
 /// The bottom of a box, and through each edge of its bottom the plane that just leaves the other box inside.
-void PatchShaft::add_sides(const FramedBox& base, const FramedBox& other, double growth) {
-    const V3d half = base.half - V3d(growth);
-    half_spaces_[count_++] = {-base.axes[2], half.z - base.axes[2].dot(base.center), true};
-    FramedBox joined = other;
-    joined.half -= V3d(growth);
-    std::array<V3d, 8> seen = joined.corners();
-    for (V3d& corner : seen) corner = base.coordinates(corner);
-    for (int axis = 0; axis < 2; ++axis)
-        for (const double side : {-1.0, 1.0}) {
-            double slope = std::numeric_limits<double>::lowest();
-            for (const V3d& corner : seen)
-                slope = std::max(slope, (side * corner[axis] - half[axis]) / (corner.z + half.z));
-            const double length = std::sqrt(1 + slope * slope);
-            const V3d normal = (base.axes[static_cast<std::size_t>(axis)] * side - base.axes[2] * slope) / length;
-            const double offset = (half[axis] + std::abs(slope) * half.z) / length;
-            half_spaces_[count_++] = {normal, offset + normal.dot(base.center), false};
-        }
+void PatchShaft::add_sides(const FramedBox& base, const FramedBox& other) {
+    half_spaces_[count_++] = {-base.axes[2], base.half.z - base.axes[2].dot(base.center), true};
+    std::array<double, 4> slopes;  // on the low and high side of both axes
+    slopes.fill(std::numeric_limits<double>::lowest());
+    for (const V3d& corner : other.corners()) {
+        const V3d at = base.coordinates(corner);
+        const double per_height = 1 / (at.z + base.half.z);
+        slopes[0] = std::max(slopes[0], (-at.x - base.half.x) * per_height);
+        slopes[1] = std::max(slopes[1], (at.x - base.half.x) * per_height);
+        slopes[2] = std::max(slopes[2], (-at.y - base.half.y) * per_height);
+        slopes[3] = std::max(slopes[3], (at.y - base.half.y) * per_height);
+    }
+    for (std::size_t i = 0; i < slopes.size(); ++i) {
+        const double side = i % 2 == 0 ? -1 : 1;
+        const double length = std::sqrt(1 + slopes[i] * slopes[i]);
+        const V3d normal = (base.axes[i / 2] * side - base.axes[2] * slopes[i]) / length;
+        const double offset = (base.half[static_cast<int>(i / 2)] + std::abs(slopes[i]) * base.half.z) / length;
+        half_spaces_[count_++] = {normal, offset + normal.dot(base.center), false};
+    }
 }
 
 bool PatchShaft::is_entered(std::span<const V3d> polygon, double slack) const {
+    // Most polygons lie outside of one half-space, or have a vertex inside of all.
+    std::uint32_t inside_all = ~std::uint32_t{0};
+    for (const HalfSpace& half : half_spaces_) {
+        std::uint32_t inside = 0;
+        for (std::size_t i = 0; i < polygon.size(); ++i)
+            inside |= (half.excess(polygon[i], slack) < 0 ? 1U : 0U) << i;
+        if (inside == 0) return false;
+        inside_all &= inside;
+    }
+    if (inside_all != 0) return true;
+
     Contour contour;
     contour.count = polygon.size();
     std::ranges::copy(polygon, contour.vertices.begin());
     for (const HalfSpace& half : half_spaces_) {
         Contour inside;
-        const double limit = half.is_end ? half.offset : half.offset + slack;
-        const auto excess = [&](const V3d& v) { return half.normal.dot(v) - limit; };
         V3d previous = contour.vertices[contour.count - 1];
-        double previous_excess = excess(previous);
+        double previous_excess = half.excess(previous, slack);
         for (std::size_t i = 0; i < contour.count; ++i) {
             const V3d& current = contour.vertices[i];
-            const double current_excess = excess(current);
+            const double current_excess = half.excess(current, slack);
             if ((current_excess < 0) != (previous_excess < 0)) {
                 const double t = previous_excess / (previous_excess - current_excess);
                 inside.vertices[inside.count++] = previous + (current - previous) * t;

@@ -24,9 +24,8 @@ constexpr double wall_lift = 4e-5;
 constexpr double group_dilation = 0.35;
 constexpr double group_lift = 0.35;
 
-/// In eps: boxes are grown by so much on every side. What stands less over a plane than facing_eps counts as lying in
-/// it: more than what two boxes are grown by.
-constexpr double box_growth = 2;
+/// In eps: what stands less over a plane than facing_eps counts as lying in it. Whole nodes are called facing or averted
+/// with a margin of one eps.
 constexpr double facing_eps = 5;
 
 /// The points of a flat patch may turn by so much from its normal, radians; cones above patches hold the points' normals.
@@ -55,6 +54,8 @@ PatchVisibility::PatchVisibility(const PointCloud& cloud, const Tree& tree, cons
     for (std::uint32_t p = 0; p < set.patches.size(); ++p) {
         for (const std::uint32_t i : set.points_of(set.patches[p])) patch_of_point_[i] = p;
         centers_.push_back(V3d(set.patches[p].center) - middle_);
+        normals_.emplace_back(set.patches[p].normal);
+        offsets_.push_back(normals_[p].dot(centers_[p]));
         const double above = set.patches[p].flat ? 0 : group_lift * static_cast<double>(set.patches[p].spacing());
         lift_.push_back(static_cast<float>(std::max({above, wall_lift * half_diagonal_, 5 * eps_})));
     }
@@ -85,6 +86,11 @@ void PatchVisibility::grow_outlines() {
             bounds.extendBy(q);
         }
         outlines.add(polygon);
+        for (std::size_t v = first_vertex_[p]; v < vertices_.size(); ++v) {
+            const V3d& next = v + 1 < vertices_.size() ? vertices_[v + 1] : vertices_[first_vertex_[p]];
+            const V3d inwards = normals_[p].cross((next - vertices_[v]).normalized());
+            edges_.push_back({inwards, inwards.dot(vertices_[v])});
+        }
         first_vertex_.push_back(vertices_.size());
         Disc& disc = discs_.emplace_back(Disc{bounds.center().x, bounds.center().y, 0});
         for (const V2d& q : outline) disc.radius = std::max(disc.radius, (q - bounds.center()).length());
@@ -104,7 +110,9 @@ void PatchVisibility::make_boxes() {
         for (const std::uint32_t i : tree_.points_of(node)) bounds.extendBy(box.coordinates(V3d(lifted(i))));
         const V3d middle = bounds.center();
         box.center = box.axes[0] * middle.x + box.axes[1] * middle.y + box.axes[2] * middle.z;
-        box.half = bounds.size() / 2 + V3d(box_growth * eps_);
+        box.half = bounds.size() / 2;
+        if (patch.flat) box.half.z = 0;
+        box.find_corners();
     });
     // Above patches a box holds the boxes of its children, whose corners may lie outside of all points.
     for (std::size_t n = boxes_.size(); n-- > 0;) {
@@ -115,6 +123,7 @@ void PatchVisibility::make_boxes() {
             for (const V3d& corner : boxes_[node.first_child + c].corners()) bounds.extendBy(corner);
         boxes_[n].center = bounds.center();
         boxes_[n].half = bounds.size() / 2;
+        boxes_[n].find_corners();
     }
 }
 
@@ -180,8 +189,8 @@ Facing PatchVisibility::in_front(std::uint32_t of, std::uint32_t node) const {
             range.high = std::max(range.high, (in_cone ? way.length() : along * cosine + across * sine) + radius);
         }
     }
-    if (range.low > facing_eps * eps_) return Facing::all;
-    return range.high <= facing_eps * eps_ ? Facing::none : Facing::some;
+    if (range.low > (facing_eps + 1) * eps_) return Facing::all;
+    return range.high <= (facing_eps - 1) * eps_ ? Facing::none : Facing::some;
 }
 
 Facing PatchVisibility::facing(std::uint32_t a, std::uint32_t b) const {
@@ -192,12 +201,8 @@ Facing PatchVisibility::facing(std::uint32_t a, std::uint32_t b) const {
     return forth == Facing::all && back == Facing::all ? Facing::all : Facing::some;
 }
 
-PatchShaft PatchVisibility::shaft(std::uint32_t a, std::uint32_t b) const {
-    return {boxes_[a], boxes_[b], box_growth * eps_};
-}
-
 bool PatchVisibility::enters(std::uint32_t k, std::uint32_t a, std::uint32_t b, const PatchShaft& shaft) const {
-    return may_cross(k, a, b) && shaft.is_entered(outline(k), eps_);
+    return shaft.is_entered(outline(k), eps_) && may_cross(k, a, b);
 }
 
 /// Whether a segment between two boxes may cross the disc around a patch. What a builder leaves out by the same tests
@@ -206,6 +211,8 @@ bool PatchVisibility::may_cross(std::uint32_t k, std::uint32_t a, std::uint32_t 
     Imath::Box3d around;
     for (const std::uint32_t node : {a, b})
         for (const V3d& corner : boxes_[node].corners()) around.extendBy(corner);
+    around.min -= V3d(box_growth());
+    around.max += V3d(box_growth());
     Imath::Box3d own;
     for (const V3d& v : outline(k)) own.extendBy(v);
     if (!around.intersects(own)) return false;
@@ -215,9 +222,9 @@ bool PatchVisibility::may_cross(std::uint32_t k, std::uint32_t a, std::uint32_t 
         const FramedBox& box = boxes_[node];
         const V3d direction(axis);
         const double middle = direction.dot(box.center - centers_[k]);
-        const double reach = std::abs(direction.dot(box.axes[0])) * box.half.x +
-                             std::abs(direction.dot(box.axes[1])) * box.half.y +
-                             std::abs(direction.dot(box.axes[2])) * box.half.z;
+        double reach = 0;
+        for (int i = 0; i < 3; ++i)
+            reach += std::abs(direction.dot(box.axes.at(static_cast<std::size_t>(i)))) * (box.half[i] + box_growth());
         return Range{middle - reach, middle + reach};
     };
     const Range ha = along(a, patch.normal);
@@ -244,36 +251,47 @@ bool PatchVisibility::may_cross(std::uint32_t k, std::uint32_t a, std::uint32_t 
     return meets(ha, {-hb.high, -hb.low}) || meets({-ha.high, -ha.low}, hb);
 }
 
+/// A segment crosses a plane at (f |t| + t |f|) / (|f| + |t|), f and t being the heights of its ends: inside of an edge
+/// if the ends' distances from the edge weigh up to more than zero.
+bool PatchVisibility::crosses_middle(std::uint32_t k, std::uint32_t a, std::uint32_t b) const {
+    const V3d& from = boxes_[a].center;
+    const V3d& to = boxes_[b].center;
+    const double from_height = normals_[k].dot(from) - offsets_[k];
+    const double to_height = normals_[k].dot(to) - offsets_[k];
+    if (!(std::min(from_height, to_height) < -eps_ && std::max(from_height, to_height) > eps_)) return false;
+    return std::ranges::all_of(edges(k), [&](const Edge& edge) {
+        return (edge.inwards.dot(from) - edge.offset) * std::abs(to_height) +
+                   (edge.inwards.dot(to) - edge.offset) * std::abs(from_height) >
+               0;
+    });
+}
+
 bool PatchVisibility::covers(std::uint32_t k, std::uint32_t a, std::uint32_t b) const {
-    const Patch& patch = set_.patches[k];
-    const V3d normal(patch.normal);
-    const V3d& center = centers_[k];
-    const std::array<V3d, 8> from = boxes_[a].corners();
-    const std::array<V3d, 8> to = boxes_[b].corners();
+    const auto from = boxes_[a].corners();
+    const auto to = boxes_[b].corners();
     std::array<double, 8> from_height{};
     std::array<double, 8> to_height{};
-    for (std::size_t i = 0; i < 8; ++i) {
-        from_height[i] = normal.dot(from[i] - center);
-        to_height[i] = normal.dot(to[i] - center);
-    }
-    const auto [from_low, from_high] = std::ranges::minmax(from_height);
-    const auto [to_low, to_high] = std::ranges::minmax(to_height);
-    if (!(from_low > eps_ && to_high < -eps_) && !(from_high < -eps_ && to_low > eps_)) return false;
+    const auto see = [&](std::span<const V3d> corners, std::array<double, 8>& heights) {
+        Range range;
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+            heights[i] = normals_[k].dot(corners[i]) - offsets_[k];
+            range = {std::min(range.low, heights[i]), std::max(range.high, heights[i])};
+            heights[i] = std::abs(heights[i]);
+        }
+        return range;
+    };
+    const Range at_from = see(from, from_height);
+    const Range at_to = see(to, to_height);
+    if (!(at_from.low > eps_ && at_to.high < -eps_) && !(at_from.high < -eps_ && at_to.low > eps_)) return false;
 
-    // A segment crosses at (f |t| + t |f|) / (|f| + |t|), f and t being heights: inside of an edge if its distances from
-    // the edge weigh up to more than zero.
-    const auto vertices = outline(k);
-    for (std::size_t e = 0; e < vertices.size(); ++e) {
-        const V3d along = (vertices[(e + 1) % vertices.size()] - vertices[e]).normalized();
-        const V3d inwards = normal.cross(along);
-        for (std::size_t i = 0; i < 8; ++i) {
-            const double from_edge = inwards.dot(from[i] - vertices[e]) - eps_;
-            for (std::size_t j = 0; j < 8; ++j) {
-                const double to_edge = inwards.dot(to[j] - vertices[e]) - eps_;
-                if (!(from_edge * std::abs(to_height[j]) + to_edge * std::abs(from_height[i]) > 0)) return false;
+    for (const Edge& edge : edges(k))
+        for (std::size_t i = 0; i < from.size(); ++i) {
+            const double from_edge = edge.inwards.dot(from[i]) - edge.offset - eps_;
+            for (std::size_t j = 0; j < to.size(); ++j) {
+                const double to_edge = edge.inwards.dot(to[j]) - edge.offset - eps_;
+                if (!(from_edge * to_height[j] + to_edge * from_height[i] > 0)) return false;
             }
         }
-    }
     return true;
 }
 

@@ -59,14 +59,19 @@ public:
     [[nodiscard]] Facing facing(std::uint32_t a, std::uint32_t b) const;
 
     /// The shaft between two nodes of patches that face each other wholly.
-    [[nodiscard]] PatchShaft shaft(std::uint32_t a, std::uint32_t b) const;
+    [[nodiscard]] PatchShaft shaft(std::uint32_t a, std::uint32_t b) const { return {boxes_[a], boxes_[b]}; }
     /// Whether patch k reaches into the shaft between two nodes.
     [[nodiscard]] bool enters(std::uint32_t k, std::uint32_t a, std::uint32_t b, const PatchShaft& shaft) const;
-    /// Whether patch k lies across every segment between two nodes of patches.
+    /// Whether patch k lies across the segment between the middles of two nodes.
+    [[nodiscard]] bool crosses_middle(std::uint32_t k, std::uint32_t a, std::uint32_t b) const;
+    /// Whether patch k, which crosses the middle, lies across every segment between two nodes of patches.
     [[nodiscard]] bool covers(std::uint32_t k, std::uint32_t a, std::uint32_t b) const;
 
-    /// Box of all places from where segments leave a node, grown by more than rounding.
+    /// Box of all places from where segments leave a node.
     [[nodiscard]] const FramedBox& box(std::uint32_t node) const { return boxes_[node]; }
+
+    /// By so much the tests that bound where segments run take boxes to be larger on every side, world units.
+    [[nodiscard]] double box_growth() const { return 2 * eps_; }
 
     /// Centre of a patch.
     [[nodiscard]] const Imath::V3d& center(std::uint32_t patch) const { return centers_[patch]; }
@@ -94,8 +99,17 @@ public:
     [[nodiscard]] double half_diagonal() const { return half_diagonal_; }
 
 private:
+    /// Inside is inwards.dot(x) >= offset.
+    struct Edge {
+        Imath::V3d inwards;
+        double offset;
+    };
+
     void grow_outlines();
     void make_boxes();
+    [[nodiscard]] std::span<const Edge> edges(std::uint32_t patch) const {
+        return std::span(edges_).subspan(first_vertex_[patch], first_vertex_[patch + 1] - first_vertex_[patch]);
+    }
     [[nodiscard]] bool may_cross(std::uint32_t k, std::uint32_t a, std::uint32_t b) const;
     [[nodiscard]] Facing in_front(std::uint32_t of, std::uint32_t node) const;
     [[nodiscard]] bool is_in_front(std::uint32_t of, const Imath::V3d& way) const;
@@ -111,7 +125,10 @@ private:
     std::vector<float> lift_;  ///< of each patch
     std::vector<std::size_t> first_vertex_;
     std::vector<Imath::V3d> vertices_;
+    std::vector<Edge> edges_;  ///< one per vertex, from it to the next
     std::vector<Disc> discs_;
+    std::vector<Imath::V3d> normals_;
+    std::vector<double> offsets_;  ///< of the patches' planes
     std::vector<FramedBox> boxes_;
     PolygonBvh bvh_;
 };
