@@ -95,10 +95,7 @@ private:
         if (facing == Facing::none) return done(pair, PatchOutcome::averted);
         DiscList left(candidates.size());
         static_cast<void>(cull_discs(candidates, boxes_[pair.first], boxes_[pair.second], false, left));
-        std::vector<std::uint32_t> patches(left.size());
-        for (std::size_t i = 0; i < left.size(); ++i)
-            patches[i] = std::bit_cast<std::uint32_t>(left.field(DiscList::leaf)[i]);
-        if (const auto outcome = pairs_.decide(pair, facing, patches)) return done(pair, *outcome);
+        if (const auto outcome = decide_now(pair, facing, left)) return done(pair, *outcome);
 
         std::vector<NodePair> parts;
         split_.for_each_part(tree_, pair, [&](const NodePair& part) { parts.push_back(part); });
@@ -111,6 +108,18 @@ private:
         if (joined == PatchOutcome::partial)
             for (std::size_t i = 0; i < parts.size(); ++i) keep(parts[i], found[i]);
         return joined;
+    }
+
+    [[nodiscard]] std::optional<PatchOutcome> decide_now(const NodePair& pair, Facing facing,
+                                                         const DiscList& left) const {
+        if (tree_.nodes[pair.first].patch == no_index || tree_.nodes[pair.second].patch == no_index) return {};
+        std::vector<std::uint32_t> on_middle;
+        find_on_middle(left, boxes_[pair.first].center, boxes_[pair.second].center, on_middle);
+        std::vector<std::uint32_t> between;
+        if (facing == Facing::all)
+            for (std::size_t i = 0; i < left.size(); ++i)
+                between.push_back(std::bit_cast<std::uint32_t>(left.field(DiscList::leaf)[i]));
+        return pairs_.decide(pair, facing, on_middle, between);
     }
 
     const Tree& tree_;

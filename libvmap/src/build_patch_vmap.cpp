@@ -50,7 +50,8 @@ private:
         const Facing facing = pairs_.facing(pair, parent);
         if (facing == Facing::none) return PatchOutcome::averted;
         const std::vector<std::uint32_t> found_near = walks_ ? near(pair) : std::vector<std::uint32_t>();
-        if (const auto outcome = pairs_.decide(pair, facing, walks_ ? found_near : all_)) return *outcome;
+        const std::vector<std::uint32_t>& candidates = walks_ ? found_near : all_;
+        if (const auto outcome = pairs_.decide(pair, facing, candidates, candidates)) return *outcome;
         std::vector<NodePair> parts;
         std::vector<PatchOutcome> found;
         split_.for_each_part(tree_, pair, [&](const NodePair& part) {

@@ -143,6 +143,40 @@ bool cull_kernel(const DiscList& list, const TurnedBox& a, const TurnedBox& b, b
     return false;
 }
 
+void middle_kernel(const DiscList& list, const Imath::V3f& from, const Imath::V3f& to,
+                   std::vector<std::uint32_t>& leaves) {
+    const Lanes d;
+    const V margin = hn::Set(d, bounds_margin);
+    for (std::size_t i = 0; i < list.size(); i += hn::Lanes(d)) {
+        const Axis normal = load_axis(list, DiscList::nx, i);
+        const V offset = hn::LoadU(d, list.field(DiscList::offset) + i);
+        const V from_height = hn::Sub(dot(normal, from), offset);
+        const V to_height = hn::Sub(dot(normal, to), offset);
+        auto crossed = hn::And(hn::Lt(hn::Min(from_height, to_height), margin),
+                               hn::Gt(hn::Max(from_height, to_height), hn::Neg(margin)));
+        crossed = hn::And(crossed, hn::FirstN(d, list.size() - i));
+        if (hn::AllFalse(d, crossed)) continue;
+        const Axis u = load_axis(list, DiscList::ux, i);
+        const Axis v = load_axis(list, DiscList::vx, i);
+        const V t = hn::Div(from_height, hn::Sub(from_height, to_height));
+        const auto distance = [&](const Axis& axis, DiscList::Field center) {
+            const V start = dot(axis, from);
+            const V at = hn::MulAdd(t, hn::Sub(dot(axis, to), start), start);
+            const V off = hn::Abs(hn::Sub(at, hn::LoadU(d, list.field(center) + i)));
+            return hn::Max(hn::Sub(off, margin), hn::Zero(d));
+        };
+        const V du = distance(u, DiscList::du);
+        const V dv = distance(v, DiscList::dv);
+        const V squared = hn::LoadU(d, list.field(DiscList::radius_squared) + i);
+        crossed = hn::AndNot(hn::Gt(hn::MulAdd(du, du, hn::Mul(dv, dv)), squared), crossed);
+        std::uint8_t bytes[8] = {};
+        hn::StoreMaskBits(d, crossed, bytes);
+        for (std::uint32_t bits = bytes[0] | static_cast<std::uint32_t>(bytes[1]) << 8; bits != 0; bits &= bits - 1)
+            leaves.push_back(std::bit_cast<std::uint32_t>(
+                list.field(DiscList::leaf)[i + static_cast<std::size_t>(__builtin_ctz(bits))]));
+    }
+}
+
 }  // namespace vmap::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -150,6 +184,7 @@ HWY_AFTER_NAMESPACE();
 namespace vmap {
 
 HWY_EXPORT(cull_kernel);
+HWY_EXPORT(middle_kernel);
 
 DiscList::DiscList(std::size_t capacity)
     : stride_(capacity + 16), values_(std::make_unique_for_overwrite<float[]>(fields * stride_)) {}
@@ -182,6 +217,11 @@ LoneDisc DiscList::at(std::size_t i) const {
 
 bool cull_discs(const DiscList& list, const TurnedBox& a, const TurnedBox& b, bool cover_counts, DiscList& left) {
     return HWY_DYNAMIC_DISPATCH(cull_kernel)(list, a, b, cover_counts, left);
+}
+
+void find_on_middle(const DiscList& list, const Imath::V3f& from, const Imath::V3f& to,
+                    std::vector<std::uint32_t>& leaves) {
+    HWY_DYNAMIC_DISPATCH(middle_kernel)(list, from, to, leaves);
 }
 
 }  // namespace vmap

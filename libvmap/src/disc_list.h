@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 namespace vmap {
 
@@ -24,7 +25,7 @@ struct LoneDisc {
 /// One array per attribute.
 class DiscList {
 public:
-    enum Field : std::size_t { nx, ny, nz, offset, slab, ux, uy, uz, vx, vy, vz, du, dv, radius_squared, leaf, fields };
+    enum Field : std::size_t { nx, ny, nz, offset, slab, ux, uy, uz, vx, vy, vz, du, dv, radius_squared, leaf, fields };  // as floats
 
     /// Room for so many discs, none of which is there yet.
     explicit DiscList(std::size_t capacity);
@@ -44,6 +45,10 @@ private:
     std::size_t stride_ = 0;  ///< with spare elements, so that whole vectors can be read and written anywhere
     std::unique_ptr<float[]> values_;
 };
+
+/// Of the segment between the middles of two boxes: which discs of a list may it cross? Appends their leaves.
+void find_on_middle(const DiscList& list, const Imath::V3f& from, const Imath::V3f& to,
+                    std::vector<std::uint32_t>& leaves);
 
 /// Puts into `left` the discs of the list that may block a segment between two boxes. The segments that cross a disc's
 /// plane do so in a rectangle, the footprint of the shaft; the disc matters if it reaches into that.

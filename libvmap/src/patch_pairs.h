@@ -36,22 +36,24 @@ public:
 
     /// The outcome of a pair that is not averted, or none when it is to be split.
     ///
-    /// - candidates: at least all patches that lie anywhere between the two
+    /// - on_middle: at least all patches that the segment between the middles crosses
+    /// - between: at least all patches that lie anywhere between the two
     [[nodiscard]] std::optional<PatchOutcome> decide(const NodePair& pair, Facing facing,
-                                                     std::span<const std::uint32_t> candidates) const {
+                                                     std::span<const std::uint32_t> on_middle,
+                                                     std::span<const std::uint32_t> between) const {
         const auto [a, b] = pair;
         const TreeNode& first = visibility_.tree().nodes[a];
         const TreeNode& second = visibility_.tree().nodes[b];
         if (first.patch == no_index || second.patch == no_index) return std::nullopt;
         std::size_t entered = 0;
-        for (const std::uint32_t k : candidates) {
+        for (const std::uint32_t k : on_middle) {
             if (!visibility_.crosses_middle(k, a, b)) continue;
             if (visibility_.covers(k, a, b)) return PatchOutcome::hidden;
             ++entered;
         }
         if (facing == Facing::all && entered <= few_patches_) {
             const PatchShaft shaft = visibility_.shaft(a, b);
-            for (const std::uint32_t k : candidates) {
+            for (const std::uint32_t k : between) {
                 if (visibility_.crosses_middle(k, a, b) || !visibility_.enters(k, a, b, shaft)) continue;
                 if (++entered > few_patches_) break;
             }
