@@ -24,8 +24,12 @@ class FastPatchBuilder {
 public:
     FastPatchBuilder(const PointCloud& cloud, const Tree& tree, const PatchSet& set, const PatchVmapConfig& config,
                      const ProgressCallback& progress)
-        : tree_(tree), visibility_(cloud, tree, set), pairs_(visibility_, config.few_patches), split_(tree),
-          ranges_(leaf_ranges(tree)), links_(progress, std::uint64_t{tree.leaves.size()} * tree.leaves.size() / 2) {
+        : tree_(tree),
+          visibility_(cloud, tree, set),
+          pairs_(visibility_, config.few_patches),
+          split_(tree),
+          ranges_(leaf_ranges(tree)),
+          links_(progress, std::uint64_t{tree.leaves.size()} * tree.leaves.size() / 2) {
         if (tree.nodes.empty()) return;
         scale_ = visibility_.half_diagonal() > 0 ? 1 / visibility_.half_diagonal() : 1;
         boxes_.reserve(tree.nodes.size());
@@ -46,7 +50,8 @@ private:
         TurnedBox unit;
         unit.center = V3f(box.center * scale_);
         for (std::size_t axis = 0; axis < 3; ++axis)
-            unit.half_axes[axis] = V3f(box.axes[axis] * ((box.half[static_cast<int>(axis)] + visibility_.box_growth()) * scale_));
+            unit.half_axes[axis] =
+                V3f(box.axes[axis] * ((box.half[static_cast<int>(axis)] + visibility_.box_growth()) * scale_));
         return unit;
     }
 
@@ -102,7 +107,8 @@ private:
         std::vector<PatchOutcome> found(parts.size());
         tbb::task_group tasks;
         for (std::size_t i = 0; i < parts.size(); ++i)
-            run_or_do(tasks, parts[i], [this, &found, &parts, &left, facing, i] { found[i] = decide(parts[i], facing, left); });
+            run_or_do(tasks, parts[i],
+                      [this, &found, &parts, &left, facing, i] { found[i] = decide(parts[i], facing, left); });
         tasks.wait();
         const PatchOutcome joined = PatchPairs::join(found);
         if (joined == PatchOutcome::partial)

@@ -20,8 +20,13 @@ class PlainBuilder {
 public:
     PlainBuilder(const PointCloud& cloud, const Tree& tree, const PatchSet& set, const PatchVmapConfig& config,
                  const ProgressCallback& progress)
-        : tree_(tree), visibility_(cloud, tree, set), pairs_(visibility_, config.few_patches), split_(tree),
-          progress_(progress), links_(progress_, 1), walks_(config.method == VmapMethod::seed),
+        : tree_(tree),
+          visibility_(cloud, tree, set),
+          pairs_(visibility_, config.few_patches),
+          split_(tree),
+          progress_(progress),
+          links_(progress_, 1),
+          walks_(config.method == VmapMethod::seed),
           all_(set.patches.size()) {
         std::iota(all_.begin(), all_.end(), 0U);
     }
@@ -75,9 +80,10 @@ private:
         for (int axis = 0; axis < 3; ++axis) {
             Imath::V3f unit(0);
             unit[axis] = 1;
-            around.at(static_cast<std::size_t>(2 * axis)) = {unit, static_cast<float>(box.max[axis] + 2 * visibility_.box_growth())};
-            around.at(static_cast<std::size_t>(2 * axis + 1)) = {-unit,
-                                                                 static_cast<float>(2 * visibility_.box_growth() - box.min[axis])};
+            around.at(static_cast<std::size_t>(2 * axis)) = {
+                unit, static_cast<float>(box.max[axis] + 2 * visibility_.box_growth())};
+            around.at(static_cast<std::size_t>(2 * axis + 1)) = {
+                -unit, static_cast<float>(2 * visibility_.box_growth() - box.min[axis])};
         }
         visibility_.bvh().polygons_in(around, found);
         return found;

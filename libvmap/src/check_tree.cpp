@@ -2,6 +2,8 @@
 #include "check_tree.h"
 
 #include <algorithm>
+#include <functional>
+#include <span>
 #include <vector>
 
 namespace vmap {
@@ -39,6 +41,26 @@ std::string fault_of_leaves(const Tree& tree) {
     return {};
 }
 
+/// Both directions of pairs of nodes, as in VisibilityMap.
+std::string fault_of_pairs(std::span<const std::uint64_t> first, std::span<const std::uint32_t> partners,
+                           std::size_t nodes) {
+    if (first.size() != nodes + 1 || first.front() != 0 || first.back() != partners.size() ||
+        !std::ranges::is_sorted(first))
+        return "the links are not those of its nodes";
+    const auto links_of = [&](std::size_t n) { return partners.subspan(first[n], first[n + 1] - first[n]); };
+    for (std::uint32_t n = 0; n < nodes; ++n) {
+        const auto links = links_of(n);
+        if (!links.empty() && links.back() >= nodes) return at("node", n, "is linked with a node that is not there");
+        if (std::ranges::adjacent_find(links, std::greater_equal{}) != links.end())
+            return at("node", n, "has links out of order");
+    }
+    for (std::uint32_t n = 0; n < nodes; ++n)
+        for (const std::uint32_t partner : links_of(n))
+            if (partner == n || !std::ranges::binary_search(links_of(partner), n))
+                return at("node", n, "has a link that its partner lacks");
+    return {};
+}
+
 }  // namespace
 
 std::string fault_of(const Tree& tree, std::size_t points) {
@@ -71,19 +93,37 @@ std::string fault_of(const Tree& tree, std::size_t points) {
 
 std::string fault_of(const VisibilityMap& map, const Tree& tree) {
     const std::size_t nodes = tree.nodes.size();
-    if (map.first_link.size() != nodes + 1 || map.first_link.front() != 0 ||
-        map.first_link.back() != map.partners.size() || !std::ranges::is_sorted(map.first_link))
-        return "the links are not those of its nodes";
-    for (std::uint32_t n = 0; n < nodes; ++n) {
-        const auto links = map.links_of(n);
-        if (!links.empty() && links.back() >= nodes) return at("node", n, "is linked with a node that is not there");
-        if (std::ranges::adjacent_find(links, std::greater_equal{}) != links.end())
-            return at("node", n, "has links out of order");
+    std::string fault = fault_of_pairs(map.first_link, map.partners, nodes);
+    if (fault.empty() && (map.rule == VisibilityRule::patch || !map.first_hidden.empty()))
+        fault = fault_of_pairs(map.first_hidden, map.hidden, nodes);
+    return fault;
+}
+
+std::string fault_of(const PatchSet& set, const Tree& tree) {
+    for (std::size_t n = 0; n < tree.nodes.size(); ++n) {
+        const TreeNode& node = tree.nodes[n];
+        if (node.patch == no_index) {
+            if (node.is_leaf()) return at("leaf", node.leaf, "belongs to no patch");
+            continue;
+        }
+        if (node.patch >= set.patches.size()) return at("node", n, "belongs to a patch that is not there");
+        const Patch& patch = set.patches[node.patch];
+        if (node.first_point < patch.first_point ||
+            std::uint64_t{node.first_point} + node.point_count > std::uint64_t{patch.first_point} + patch.point_count)
+            return at("node", n, "is not a part of its patch");
+        for (std::uint32_t c = 0; c < node.child_count; ++c)
+            if (tree.nodes[node.first_child + c].patch != node.patch)
+                return at("node", n, "has a child of another patch");
     }
-    for (std::uint32_t n = 0; n < nodes; ++n)
-        for (const std::uint32_t partner : map.links_of(n))
-            if (partner == n || !has_link(map, partner, n)) return at("node", n, "has a link that its partner lacks");
-    return {};
+    std::uint64_t points = 0;
+    for (std::size_t p = 0; p < set.patches.size(); ++p) {
+        const Patch& patch = set.patches[p];
+        if (std::uint64_t{patch.first_point} + patch.point_count > tree.point_order.size() || patch.point_count == 0)
+            return at("patch", p, "has points that are not there");
+        if (!(patch.area >= 0)) return at("patch", p, "has no area");
+        points += patch.point_count;
+    }
+    return points == tree.point_order.size() ? "" : "the patches do not hold all points";
 }
 
 }  // namespace vmap

@@ -25,7 +25,24 @@ struct LoneDisc {
 /// One array per attribute.
 class DiscList {
 public:
-    enum Field : std::size_t { nx, ny, nz, offset, slab, ux, uy, uz, vx, vy, vz, du, dv, radius_squared, leaf, fields };  // as floats
+    enum Field : std::size_t {
+        nx,
+        ny,
+        nz,
+        offset,
+        slab,
+        ux,
+        uy,
+        uz,
+        vx,
+        vy,
+        vz,
+        du,
+        dv,
+        radius_squared,
+        leaf,
+        fields
+    };  // as floats
 
     /// Room for so many discs, none of which is there yet.
     explicit DiscList(std::size_t capacity);

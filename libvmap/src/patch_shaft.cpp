@@ -61,8 +61,7 @@ bool PatchShaft::is_entered(std::span<const V3d> polygon, double slack) const {
     std::uint32_t inside_all = ~std::uint32_t{0};
     for (const HalfSpace& half : half_spaces_) {
         std::uint32_t inside = 0;
-        for (std::size_t i = 0; i < polygon.size(); ++i)
-            inside |= (half.excess(polygon[i], slack) < 0 ? 1U : 0U) << i;
+        for (std::size_t i = 0; i < polygon.size(); ++i) inside |= (half.excess(polygon[i], slack) < 0 ? 1U : 0U) << i;
         if (inside == 0) return false;
         inside_all &= inside;
     }

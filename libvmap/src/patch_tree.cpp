@@ -48,8 +48,8 @@ private:
         const V2f size = box.size();
         const V2f middle = box.center();
         const bool too_many = config_.points_per_leaf > 0 && count > config_.points_per_leaf;
-        const float limit = config_.cell_size > 0 ? static_cast<float>(config_.cell_size)
-                                                  : std::numeric_limits<float>::infinity();
+        const float limit =
+            config_.cell_size > 0 ? static_cast<float>(config_.cell_size) : std::numeric_limits<float>::infinity();
         const auto too_long = [&](float side, float other) { return side > limit || (too_many && 2 * side > other); };
         const bool cut_x = size.x > 0 && too_long(size.x, size.y);
         const bool cut_y = size.y > 0 && too_long(size.y, size.x);
@@ -100,9 +100,8 @@ public:
     }
 
     Tree join() {
-        std::ranges::stable_sort(order_, {}, [&](std::uint32_t p) {
-            return orientation_class(set_.patches[p].normal);
-        });
+        std::ranges::stable_sort(order_, {},
+                                 [&](std::uint32_t p) { return orientation_class(set_.patches[p].normal); });
         std::vector<std::uint32_t> class_begins;
         for (std::uint32_t i = 0; i < order_.size(); ++i)
             if (i == 0 || class_at(i) != class_at(i - 1)) class_begins.push_back(i);

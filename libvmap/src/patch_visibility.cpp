@@ -24,11 +24,12 @@ constexpr double wall_lift = 4e-5;
 constexpr double group_dilation = 0.35;
 constexpr double group_lift = 0.35;
 
-/// In eps: what stands less over a plane than facing_eps counts as lying in it. Whole nodes are called facing or averted
-/// with a margin of one eps.
+/// In eps: what stands less over a plane than facing_eps counts as lying in it. Whole nodes are called facing or
+/// averted with a margin of one eps.
 constexpr double facing_eps = 5;
 
-/// The points of a flat patch may turn by so much from its normal, radians; cones above patches hold the points' normals.
+/// The points of a flat patch may turn by so much from its normal, radians; cones above patches hold the points'
+/// normals.
 constexpr double flat_normal_range = 3e-3;
 constexpr double cone_rounding = 3e-5;
 
@@ -40,7 +41,7 @@ struct Range {
 }  // namespace
 
 PatchVisibility::PatchVisibility(const PointCloud& cloud, const Tree& tree, const PatchSet& set)
-    : cloud_(cloud), tree_(tree), set_(set), patch_of_point_(cloud.size()) {
+    : cloud_(cloud), tree_(tree), set_(set), sites_(cloud.size()) {
     if (tree.nodes.empty()) return;
     const Imath::Box3f& bounds = tree.nodes[0].bounds;
     middle_ = (V3d(bounds.max) + V3d(bounds.min)) / 2;
@@ -52,13 +53,13 @@ PatchVisibility::PatchVisibility(const PointCloud& cloud, const Tree& tree, cons
     eps_ = plane_eps * half_diagonal_ + 4 * double{std::numeric_limits<float>::epsilon()} * largest;
 
     for (std::uint32_t p = 0; p < set.patches.size(); ++p) {
-        for (const std::uint32_t i : set.points_of(set.patches[p])) patch_of_point_[i] = p;
         centers_.push_back(V3d(set.patches[p].center) - middle_);
         normals_.emplace_back(set.patches[p].normal);
         offsets_.push_back(normals_[p].dot(centers_[p]));
         const double above = set.patches[p].flat ? 0 : group_lift * static_cast<double>(set.patches[p].spacing());
         lift_.push_back(static_cast<float>(std::max({above, wall_lift * half_diagonal_, 5 * eps_})));
     }
+    make_sites();
     grow_outlines();
     make_boxes();
 }
@@ -107,7 +108,7 @@ void PatchVisibility::make_boxes() {
         FramedBox& box = boxes_[n];
         box.axes = {V3d(patch.u), V3d(patch.v), V3d(patch.normal)};
         Imath::Box3d bounds;
-        for (const std::uint32_t i : tree_.points_of(node)) bounds.extendBy(box.coordinates(V3d(lifted(i))));
+        for (const std::uint32_t i : tree_.points_of(node)) bounds.extendBy(box.coordinates(V3d(sites_[i].lifted)));
         const V3d middle = bounds.center();
         box.center = box.axes[0] * middle.x + box.axes[1] * middle.y + box.axes[2] * middle.z;
         box.half = bounds.size() / 2;
@@ -127,28 +128,33 @@ void PatchVisibility::make_boxes() {
     }
 }
 
-V3f PatchVisibility::lifted(std::uint32_t point) const {
-    const std::uint32_t p = patch_of_point_[point];
-    const V3d place = V3d(cloud_.positions[point]) - middle_;
-    const V3d normal(set_.patches[p].normal);
-    // The points of a wall are taken to lie in it.
-    const double height = set_.patches[p].flat ? normal.dot(place - centers_[p]) : 0.0;
-    return V3f(place + normal * (static_cast<double>(lift_[p]) - height));
-}
-
-bool PatchVisibility::is_in_front(std::uint32_t of, const V3d& way) const {
-    const Patch& patch = set_.patches[patch_of_point_[of]];
-    return V3d(patch.flat ? patch.normal : cloud_.normals[of]).dot(way) > facing_eps * eps_;
+void PatchVisibility::make_sites() {
+    tbb::parallel_for(std::size_t{0}, tree_.leaves.size(), [&](std::size_t leaf) {
+        const TreeNode& node = tree_.nodes[tree_.leaves[leaf].node];
+        const Patch& patch = set_.patches[node.patch];
+        const V3d normal(patch.normal);
+        for (const std::uint32_t i : tree_.points_of(node)) {
+            const V3d place = V3d(cloud_.positions[i]) - middle_;
+            // The points of a wall are taken to lie in it.
+            const double height = patch.flat ? normal.dot(place - centers_[node.patch]) : 0.0;
+            sites_[i].lifted = V3f(place + normal * (static_cast<double>(lift_[node.patch]) - height));
+            sites_[i].normal = patch.flat ? patch.normal : cloud_.normals[i];
+            sites_[i].leaf = static_cast<std::uint32_t>(leaf);
+        }
+    });
 }
 
 bool PatchVisibility::points_face(std::uint32_t x, std::uint32_t y) const {
-    const V3d way = V3d(lifted(y)) - V3d(lifted(x));
-    return is_in_front(x, way) && is_in_front(y, -way);
+    const Site& from = sites_[x];
+    const Site& to = sites_[y];
+    const V3d way = V3d(to.lifted) - V3d(from.lifted);
+    const double least = facing_eps * eps_;
+    return V3d(from.normal).dot(way) > least && -V3d(to.normal).dot(way) > least;
 }
 
 bool PatchVisibility::is_blocked(std::uint32_t x, std::uint32_t y) const {
-    const V3f from = lifted(std::min(x, y));
-    return bvh_.any_hit({from, lifted(std::max(x, y)) - from, 0, 1});
+    const V3f& from = sites_[std::min(x, y)].lifted;
+    return bvh_.any_hit({from, sites_[std::max(x, y)].lifted - from, 0, 1});
 }
 
 bool PatchVisibility::sees(std::uint32_t x, std::uint32_t y) const {

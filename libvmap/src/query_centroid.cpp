@@ -2,12 +2,10 @@
 #include "leaf_pairs.h"
 #include "query_engine.h"
 
-#include <vmap/error.h>
 #include <vmap/leaf_visibility.h>
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 namespace vmap {
 namespace {
@@ -15,14 +13,11 @@ namespace {
 using Imath::V3d;
 using Imath::V3f;
 
-constexpr std::size_t most_leaves = 1U << 18;
-
 class CentroidEngine final : public QueryEngine {
 public:
     CentroidEngine(const PointCloud& points, const Tree& over_points, const VisibilityMap& map)
         : QueryEngine(points, over_points),
-          ranges_(leaf_ranges(tree)),
-          pairs_(tree, ranges_, map.first_link, map.partners),
+          pairs_(tree, ranges, map.first_link, map.partners),
           visibility_(tree),
           leaf_of_point_(points.size()) {
         for (std::uint32_t leaf = 0; leaf < tree.leaves.size(); ++leaf)
@@ -40,7 +35,7 @@ public:
         const std::vector<std::uint32_t> to = leaves_of(ys);
         // If the smallest nodes around both agree in all their leaves, one look is enough.
         ++cost.primitive_tests;
-        const PairStatus whole = pairs_.status(node_around(from), node_around(to));
+        const PairStatus whole = pairs_.status(ranges[node_around(from)], ranges[node_around(to)]);
         if (whole != PairStatus::partial) return whole;
         bool some = false;
         bool every = true;
@@ -77,31 +72,7 @@ public:
     }
 
 private:
-    [[nodiscard]] std::vector<std::uint32_t> leaves_of(std::span<const std::uint32_t> points) const {
-        std::vector<std::uint32_t> leaves;
-        for (const std::uint32_t point : points) leaves.push_back(leaf_of_point_[point]);
-        std::ranges::sort(leaves);
-        const auto rest = std::ranges::unique(leaves);
-        leaves.erase(rest.begin(), rest.end());
-        return leaves;
-    }
-
-    /// The leaves of the smallest node that holds all of these.
-    [[nodiscard]] LeafRange node_around(const std::vector<std::uint32_t>& leaves) const {
-        const auto holds = [&](std::uint32_t n) {
-            return ranges_[n].holds(leaves.front()) && ranges_[n].holds(leaves.back());
-        };
-        std::uint32_t n = 0;
-        for (bool descends = true; descends;) {
-            descends = false;
-            for (std::uint32_t c = 0; c < tree.nodes[n].child_count && !descends; ++c) {
-                if (!holds(tree.nodes[n].first_child + c)) continue;
-                n = tree.nodes[n].first_child + c;
-                descends = true;
-            }
-        }
-        return ranges_[n];
-    }
+    [[nodiscard]] std::uint32_t leaf_of(std::uint32_t point) const override { return leaf_of_point_[point]; }
 
     [[nodiscard]] std::uint32_t nearest_in_leaf(std::uint32_t leaf, const V3f& place) const {
         const auto points = tree.points_of(tree.nodes[tree.leaves[leaf].node]);
@@ -109,7 +80,6 @@ private:
             points, {}, [&](std::uint32_t i) { return (V3d(cloud.positions[i]) - V3d(place)).length2(); });
     }
 
-    std::vector<LeafRange> ranges_;
     LeafPairs pairs_;
     LeafVisibility visibility_;
     std::vector<std::uint32_t> leaf_of_point_;
@@ -119,9 +89,6 @@ private:
 
 std::unique_ptr<const QueryEngine> make_centroid_engine(const PointCloud& cloud, const Tree& tree,
                                                         const VisibilityMap& map) {
-    if (tree.leaves.size() > most_leaves)
-        throw UsageError("the tree has " + std::to_string(tree.leaves.size()) + " leaves; queries take at most " +
-                         std::to_string(most_leaves));
     return std::make_unique<CentroidEngine>(cloud, tree, map);
 }
 

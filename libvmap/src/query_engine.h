@@ -3,15 +3,18 @@
 /// What the rules answer differently.
 #pragma once
 
+#include <vmap/leaf_ranges.h>
 #include <vmap/query_vmap.h>
 
 #include <memory>
+#include <vector>
 
 namespace vmap {
 
 class QueryEngine {
 public:
-    QueryEngine(const PointCloud& points, const Tree& over_points) : cloud(points), tree(over_points) {}
+    QueryEngine(const PointCloud& points, const Tree& over_points)
+        : cloud(points), tree(over_points), ranges(leaf_ranges(over_points)) {}
     virtual ~QueryEngine() = default;
     QueryEngine(const QueryEngine&) = delete;
     QueryEngine& operator=(const QueryEngine&) = delete;
@@ -26,9 +29,21 @@ public:
 
     const PointCloud& cloud;
     const Tree& tree;
+    const std::vector<LeafRange> ranges;
+
+protected:
+    [[nodiscard]] virtual std::uint32_t leaf_of(std::uint32_t point) const = 0;
+
+    /// The leaves of some points, each once, ascending.
+    [[nodiscard]] std::vector<std::uint32_t> leaves_of(std::span<const std::uint32_t> points) const;
+
+    /// The smallest node that holds all of some leaves.
+    [[nodiscard]] std::uint32_t node_around(const std::vector<std::uint32_t>& leaves) const;
 };
 
 [[nodiscard]] std::unique_ptr<const QueryEngine> make_centroid_engine(const PointCloud& cloud, const Tree& tree,
                                                                       const VisibilityMap& map);
+[[nodiscard]] std::unique_ptr<const QueryEngine> make_patch_engine(const PointCloud& cloud, const Tree& tree,
+                                                                   const VisibilityMap& map, const PatchSet& set);
 
 }  // namespace vmap

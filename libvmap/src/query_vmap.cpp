@@ -1,13 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "query_engine.h"
 
+#include <vmap/error.h>
+
 #include <algorithm>
 #include <cassert>
+#include <string>
 
 namespace vmap {
 namespace {
 
 using Imath::V3d;
+
+constexpr std::size_t most_leaves = 1U << 18;
 
 /// Squared distance of a place from a node's box.
 double distance_squared(const TreeNode& node, const V3d& place) {
@@ -45,8 +50,38 @@ void visit_around(const QueryEngine& engine, const V3d& place, double& limit, co
 
 }  // namespace
 
-VmapQuery::VmapQuery(const PointCloud& cloud, const Tree& tree, const VisibilityMap& map)
-    : engine_(make_centroid_engine(cloud, tree, map)) {}
+std::vector<std::uint32_t> QueryEngine::leaves_of(std::span<const std::uint32_t> points) const {
+    std::vector<std::uint32_t> leaves;
+    for (const std::uint32_t point : points) leaves.push_back(leaf_of(point));
+    std::ranges::sort(leaves);
+    const auto rest = std::ranges::unique(leaves);
+    leaves.erase(rest.begin(), rest.end());
+    return leaves;
+}
+
+std::uint32_t QueryEngine::node_around(const std::vector<std::uint32_t>& leaves) const {
+    const auto holds = [&](std::uint32_t n) {
+        return ranges[n].holds(leaves.front()) && ranges[n].holds(leaves.back());
+    };
+    std::uint32_t n = 0;
+    for (bool descends = true; descends;) {
+        descends = false;
+        for (std::uint32_t c = 0; c < tree.nodes[n].child_count && !descends; ++c) {
+            if (!holds(tree.nodes[n].first_child + c)) continue;
+            n = tree.nodes[n].first_child + c;
+            descends = true;
+        }
+    }
+    return n;
+}
+
+VmapQuery::VmapQuery(const PointCloud& cloud, const Tree& tree, const VisibilityMap& map, const PatchSet& patches) {
+    if (tree.leaves.size() > most_leaves)
+        throw UsageError("the tree has " + std::to_string(tree.leaves.size()) + " leaves; queries take at most " +
+                         std::to_string(most_leaves));
+    engine_ = map.rule == VisibilityRule::patch ? make_patch_engine(cloud, tree, map, patches)
+                                                : make_centroid_engine(cloud, tree, map);
+}
 
 VmapQuery::~VmapQuery() = default;
 VmapQuery::VmapQuery(VmapQuery&&) noexcept = default;

@@ -6,6 +6,7 @@
 
 #include <vmap/vmap_file.h>
 
+#include <array>
 #include <bit>
 #include <cstdint>
 #include <string>
@@ -95,6 +96,53 @@ void links_chunk(Archive& archive, Contents& c) {
     if constexpr (Archive::reads) c.map.rule = archive.checked_enum(rule, VisibilityRule::patch);
     archive.array(c.map.first_link);
     archive.array(c.map.partners);
+    archive.array(c.map.first_hidden);
+    archive.array(c.map.hidden);
+}
+
+/// A patch in the file.
+struct PatchRecord {
+    std::array<Imath::V3f, 4> frame;  ///< center, normal, u, v
+    std::uint32_t first_point;
+    std::uint32_t point_count;
+    float area;
+    std::uint32_t kind;  ///< 1 flat, 2 emits, or the sum of both
+    std::uint32_t vertices;
+};
+static_assert(sizeof(PatchRecord) == 68);
+
+/// The order of the patches' points is that of the tree.
+template <class Archive, class Contents>
+void patches_chunk(Archive& archive, Contents& c) {
+    std::vector<PatchRecord> records;
+    std::vector<Imath::V3f> vertices;
+    if constexpr (!Archive::reads) {
+        for (std::size_t p = 0; p < c.patches.patches.size(); ++p) {
+            const Patch& patch = c.patches.patches[p];
+            const auto outline = c.patches.outlines[p];
+            records.push_back({{patch.center, patch.normal, patch.u, patch.v},
+                               patch.first_point,
+                               patch.point_count,
+                               patch.area,
+                               (patch.flat ? 1U : 0U) + (patch.emits ? 2U : 0U),
+                               static_cast<std::uint32_t>(outline.size())});
+            vertices.insert(vertices.end(), outline.begin(), outline.end());
+        }
+    }
+    archive.array(records);
+    archive.array(vertices);
+    if constexpr (Archive::reads) {
+        std::size_t next = 0;
+        for (const PatchRecord& r : records) {
+            archive.require(r.vertices >= 3 && r.vertices <= max_polygon_vertices &&
+                            r.vertices <= vertices.size() - next && r.kind < 4);
+            c.patches.outlines.add(std::span(vertices).subspan(next, r.vertices));
+            next += r.vertices;
+            c.patches.patches.push_back({r.frame[0], r.frame[1], r.frame[2], r.frame[3], r.first_point, r.point_count,
+                                         r.area, (r.kind & 1) != 0, (r.kind & 2) != 0});
+        }
+        archive.require(next == vertices.size());
+    }
 }
 
 /// Calls visit(name, describe) for every chunk in the order of the file, where describe(archive, contents) hands the
@@ -107,6 +155,7 @@ void for_each_chunk(const Visit& visit) {
     visit("CAMS", [](auto& archive, auto& c) { cameras_chunk(archive, c); });
     visit("TREE", [](auto& archive, auto& c) { tree_chunk(archive, c); });
     visit("LINK", [](auto& archive, auto& c) { links_chunk(archive, c); });
+    visit("PTCH", [](auto& archive, auto& c) { patches_chunk(archive, c); });
 }
 
 }  // namespace vmap

@@ -52,6 +52,10 @@ public:
         return static_cast<Enum>(number);
     }
 
+    void require(bool sound) const {
+        if (!sound) throw Broken{"chunk " + name_ + " is inconsistent"};
+    }
+
     void rest(std::vector<std::byte>& bytes) {
         bytes.resize(left_);
         read(bytes);
@@ -121,6 +125,9 @@ void check(const VmapContents& c) {
         throw Broken{"has points without all their attributes"};
     if (const std::string fault = fault_of(c.tree, points); !fault.empty()) throw Broken{"is inconsistent: " + fault};
     if (const std::string fault = fault_of(c.map, c.tree); !fault.empty()) throw Broken{"is inconsistent: " + fault};
+    if (c.map.rule != VisibilityRule::patch) return;
+    if (const std::string fault = fault_of(c.patches, c.tree); !fault.empty())
+        throw Broken{"is inconsistent: " + fault};
 }
 
 VmapContents read_contents(std::istream& file, std::uint64_t file_size) {
@@ -149,6 +156,7 @@ VmapContents read_contents(std::istream& file, std::uint64_t file_size) {
         if (std::ranges::find(found, own) == found.end()) throw Broken{"lacks chunk " + own};
     });
     check(contents);
+    contents.patches.point_order = contents.tree.point_order;
     return contents;
 }
 

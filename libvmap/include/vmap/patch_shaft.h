@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The shaft between two pieces of surface that face each other, as half-spaces: the convex hull of both, exact for flat
-/// pieces.
+/// The shaft between two pieces of surface that face each other, as half-spaces: the convex hull of both, exact for
+/// flat pieces.
 ///
 /// This work is based on: E. Haines, J. Wallace, "Shaft culling for efficient ray-traced radiosity", EGWR 1991.
 #pragma once
@@ -17,7 +17,8 @@ namespace vmap {
 /// A box in a frame of its own: center + x * half.x * axes[0] + ..., x, y and z in [-1, 1]. Flat when half.z is 0.
 struct FramedBox {
     Imath::V3d center{0, 0, 0};
-    std::array<Imath::V3d, 3> axes{Imath::V3d(1, 0, 0), Imath::V3d(0, 1, 0), Imath::V3d(0, 0, 1)};  ///< unit, orthogonal
+    std::array<Imath::V3d, 3> axes{Imath::V3d(1, 0, 0), Imath::V3d(0, 1, 0),
+                                   Imath::V3d(0, 0, 1)};  ///< unit, orthogonal
     Imath::V3d half{0, 0, 0};
     std::array<Imath::V3d, 8> all_corners;  ///< the first four suffice for a flat box
     std::size_t corner_count = 8;

@@ -14,7 +14,7 @@
 namespace vmap {
 
 struct PatchTreeConfig {
-    double cell_size = 0;  ///< a cell is halved along a side that is longer, world units; 0: no limit
+    double cell_size = 0;               ///< a cell is halved along a side that is longer, world units; 0: no limit
     std::uint32_t points_per_leaf = 0;  ///< and while it holds more points; 0: no limit
 };
 

@@ -52,8 +52,13 @@ public:
     /// apart however far off the origin is.
     [[nodiscard]] const Imath::V3d& middle() const { return middle_; }
 
-    /// Where segments leave from a point.
-    [[nodiscard]] Imath::V3f lifted(std::uint32_t point) const;
+    /// What queries need of a point, in one place of memory.
+    struct alignas(32) Site {
+        Imath::V3f lifted;  ///< where segments leave from it
+        Imath::V3f normal;  ///< of its patch if that is flat, else its own
+        std::uint32_t leaf = 0;
+    };
+    [[nodiscard]] const Site& site(std::uint32_t point) const { return sites_[point]; }
 
     /// Facing of two nodes anywhere in the tree: all or none only if it is so for every pair of their points.
     [[nodiscard]] Facing facing(std::uint32_t a, std::uint32_t b) const;
@@ -92,7 +97,6 @@ public:
     [[nodiscard]] const PolygonBvh& bvh() const { return bvh_; }
     [[nodiscard]] const PatchSet& set() const { return set_; }
     [[nodiscard]] const Tree& tree() const { return tree_; }
-    [[nodiscard]] std::uint32_t patch_of_point(std::uint32_t point) const { return patch_of_point_[point]; }
     /// Distance below which things count as touching, world units.
     [[nodiscard]] double eps() const { return eps_; }
     /// Half the diagonal of the tree's box, world units.
@@ -105,6 +109,7 @@ private:
         double offset;
     };
 
+    void make_sites();
     void grow_outlines();
     void make_boxes();
     [[nodiscard]] std::span<const Edge> edges(std::uint32_t patch) const {
@@ -112,7 +117,6 @@ private:
     }
     [[nodiscard]] bool may_cross(std::uint32_t k, std::uint32_t a, std::uint32_t b) const;
     [[nodiscard]] Facing in_front(std::uint32_t of, std::uint32_t node) const;
-    [[nodiscard]] bool is_in_front(std::uint32_t of, const Imath::V3d& way) const;
 
     const PointCloud& cloud_;
     const Tree& tree_;
@@ -120,7 +124,7 @@ private:
     Imath::V3d middle_{0, 0, 0};
     double half_diagonal_ = 0;
     double eps_ = 0;
-    std::vector<std::uint32_t> patch_of_point_;
+    std::vector<Site> sites_;
     std::vector<Imath::V3d> centers_;
     std::vector<float> lift_;  ///< of each patch
     std::vector<std::size_t> first_vertex_;

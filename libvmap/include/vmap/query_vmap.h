@@ -9,6 +9,7 @@
 #pragma once
 
 #include <vmap/light_source.h>
+#include <vmap/patch.h>
 #include <vmap/point_cloud.h>
 #include <vmap/tree.h>
 #include <vmap/visibility_map.h>
@@ -39,10 +40,11 @@ class QueryEngine;
 /// Safe to use from many threads at once.
 class VmapQuery {
 public:
-    /// All three are kept by reference and belong together: the tree is that of the cloud, the map that of the tree.
+    /// All are kept by reference and belong together: the tree is that of the cloud, the map that of the tree.
     ///
+    /// - patches: those that the tree was made of; read under rule `patch` only
     /// - throws UsageError for a tree of more than 262 144 leaves, whose pairs would not fit into memory
-    VmapQuery(const PointCloud& cloud, const Tree& tree, const VisibilityMap& map);
+    VmapQuery(const PointCloud& cloud, const Tree& tree, const VisibilityMap& map, const PatchSet& patches);
     ~VmapQuery();
     VmapQuery(VmapQuery&&) noexcept;
     VmapQuery& operator=(VmapQuery&&) noexcept;
@@ -52,7 +54,8 @@ public:
     /// - x, y: indices into the cloud
     [[nodiscard]] bool sees(std::uint32_t x, std::uint32_t y) const;
 
-    /// Query 2: what the points xs see of the points ys. The cost does not grow with the number of pairs.
+    /// Query 2: what the points xs see of the points ys. The cost does not grow with the number of pairs. Under rule
+    /// `patch` no point is tested, and partial also means that the map alone cannot tell.
     ///
     /// - xs, ys: indices into the cloud, at least one each
     [[nodiscard]] PairStatus status(std::span<const std::uint32_t> xs, std::span<const std::uint32_t> ys,

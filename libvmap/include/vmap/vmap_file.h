@@ -6,6 +6,7 @@
 
 #include <vmap/light_source.h>
 #include <vmap/light_units.h>
+#include <vmap/patch.h>
 #include <vmap/point_cloud.h>
 #include <vmap/scene.h>
 #include <vmap/tree.h>
@@ -33,6 +34,7 @@ struct VmapContents {
     std::vector<Camera> cameras;
     Tree tree;  ///< over the cloud
     VisibilityMap map;
+    PatchSet patches;         ///< those of the tree; empty under rule `centroid`
     double tree_seconds = 0;  ///< what building took
     double map_seconds = 0;
     std::map<std::string, std::vector<std::byte>> extra;  ///< chunks of other stages, by their four-letter name

@@ -96,7 +96,8 @@ TEST(PatchVmap, EachVisiblePairOfLeavesIsUnderOneLinkAndNoOtherPairUnderAny) {
                 const Facing facing = visibility.facing(node_a, node_b);
                 bool entered = false;
                 for (std::uint32_t k = 0; k < p.set.patches.size(); ++k)
-                    entered |= facing == Facing::all && visibility.enters(k, node_a, node_b, visibility.shaft(node_a, node_b));
+                    entered |=
+                        facing == Facing::all && visibility.enters(k, node_a, node_b, visibility.shaft(node_a, node_b));
                 const std::size_t at = a * leaves + b;
                 if (facing == Facing::all && !entered) {
                     ASSERT_EQ(links[at], 1) << a << " " << b;

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cloud_scenes.h"
 
+#include <vmap/build_patch_vmap.h>
 #include <vmap/build_vmap.h>
 #include <vmap/error.h>
 #include <vmap/octree.h>
+#include <vmap/patch_tree.h>
 #include <vmap/vmap_file.h>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstring>
 #include <fstream>
@@ -40,6 +43,15 @@ VmapContents some_contents(PointCloud cloud, OctreeKind kind = OctreeKind::adapt
     contents.tree_seconds = 0.25;
     contents.map_seconds = 0.5;
     contents.extra["HITS"] = {std::byte{1}, std::byte{2}, std::byte{3}};
+    return contents;
+}
+
+VmapContents some_patch_contents(PointCloud cloud) {
+    VmapContents contents;
+    contents.cloud = std::move(cloud);
+    contents.patches = find_patches(contents.cloud);
+    contents.tree = build_patch_tree(contents.cloud, contents.patches, {.points_per_leaf = 30});
+    contents.map = build_patch_vmap(contents.cloud, contents.tree, contents.patches);
     return contents;
 }
 
@@ -100,6 +112,25 @@ TEST_F(VmapFile, ComesBackAsItWas) {
     }
 }
 
+TEST_F(VmapFile, PatchesComeBackAsTheyWere) {
+    const VmapContents contents = some_patch_contents(test::packed_room(2000));
+    save(to_bytes(contents));
+    const VmapContents back = read_vmap(path);
+    EXPECT_TRUE(back.tree == contents.tree);
+    EXPECT_TRUE(back.map == contents.map);
+    EXPECT_FALSE(back.map.hidden.empty());
+    EXPECT_EQ(back.patches.point_order, contents.patches.point_order);
+    ASSERT_EQ(back.patches.patches.size(), contents.patches.patches.size());
+    for (std::size_t p = 0; p < back.patches.patches.size(); ++p) {
+        const Patch& was = contents.patches.patches[p];
+        const Patch& is = back.patches.patches[p];
+        EXPECT_TRUE(is.center == was.center && is.normal == was.normal && is.u == was.u && is.v == was.v);
+        EXPECT_TRUE(is.first_point == was.first_point && is.point_count == was.point_count && is.area == was.area);
+        EXPECT_TRUE(is.flat == was.flat && is.emits == was.emits);
+        EXPECT_TRUE(std::ranges::equal(back.patches.outlines[p], contents.patches.outlines[p]));
+    }
+}
+
 TEST_F(VmapFile, DegenerateCloudsComeBackAsTheyWere) {
     std::vector<test::NamedCloud> clouds = test::degenerate_clouds();
     clouds.push_back({"empty", {}});
@@ -121,7 +152,7 @@ TEST_F(VmapFile, SameContentsGiveTheSameBytes) {
 TEST_F(VmapFile, RefusedWhenCutAtAnyByte) {
     const Bytes whole = to_bytes(some_contents(test::empty_room(60)));
     ASSERT_EQ(refusal(whole), "");
-    for (std::size_t size = 0; size < whole.size(); size += 1 + size / 600)
+    for (std::size_t size = 0; size < whole.size(); size += 1 + size / 250)
         ASSERT_NE(refusal(Bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size))), "") << size;
 }
 
@@ -174,7 +205,27 @@ TEST_F(VmapFile, RefusesWhatIsInconsistent) {
         {"links out of bounds", [](auto& c) { c.map.first_link[1] = ~std::uint64_t{0}; }},
         {"links of fewer nodes", [](auto& c) { c.map.first_link.pop_back(); }},
         {"no normals", [](auto& c) { c.cloud.normals.clear(); }},
+        {"links under rule patch without patches", [](auto& c) { c.map.rule = VisibilityRule::patch; }},
         {"albedo for some", [](auto& c) { c.cloud.albedo.pop_back(); }},
+    };
+    for (const auto& [name, spoil] : faults) {
+        SCOPED_TRACE(name);
+        VmapContents contents = sound;
+        spoil(contents);
+        EXPECT_NE(refusal(to_bytes(contents)), "");
+    }
+}
+
+TEST_F(VmapFile, RefusesInconsistentPatches) {
+    const VmapContents sound = some_patch_contents(test::packed_room(1000));
+    ASSERT_EQ(refusal(to_bytes(sound)), "");
+    std::vector<std::pair<std::string, std::function<void(VmapContents&)>>> faults{
+        {"a patch that is not there", [](auto& c) { c.tree.nodes.back().patch = 1'000'000; }},
+        {"a leaf of no patch", [](auto& c) { c.tree.nodes.back().patch = no_index; }},
+        {"points beyond the end", [](auto& c) { c.patches.patches.back().point_count = 4'000'000'000U; }},
+        {"a patch too few", [](auto& c) { c.patches.patches.pop_back(); }},
+        {"hidden nodes beyond the end", [](auto& c) { c.map.hidden.back() = 4'000'000; }},
+        {"no hidden nodes", [](auto& c) { c.map.first_hidden.clear(); }},
     };
     for (const auto& [name, spoil] : faults) {
         SCOPED_TRACE(name);

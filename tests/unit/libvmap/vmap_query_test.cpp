@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cloud_scenes.h"
 
+#include <vmap/build_patch_vmap.h>
 #include <vmap/build_vmap.h>
 #include <vmap/leaf_visibility.h>
 #include <vmap/octree.h>
+#include <vmap/patch_tree.h>
+#include <vmap/patch_visibility.h>
 #include <vmap/query_vmap.h>
 #include <vmap/show_visibility.h>
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <random>
 
@@ -22,9 +26,30 @@ using Imath::V3f;
 /// A cloud with its tree, map and queries.
 struct Questioned {
     explicit Questioned(PointCloud c, OctreeConfig config = {.points_per_leaf = 16})
-        : cloud(std::move(c)), tree(build_octree(cloud, config)), map(build_vmap(tree)), query(cloud, tree, map) {}
+        : cloud(std::move(c)), tree(build_octree(cloud, config)), map(build_vmap(tree)), query(cloud, tree, map, {}) {}
 
     PointCloud cloud;
+    Tree tree;
+    VisibilityMap map;
+    VmapQuery query;
+};
+
+/// The same under rule `patch`.
+struct QuestionedPatches {
+    QuestionedPatches(PointCloud c, std::size_t leaves, std::uint32_t few_patches = 0)
+        : cloud(with_areas(std::move(c))),
+          set(find_patches(cloud)),
+          tree(build_patch_tree(cloud, set, patch_tree_config_for_leaves(cloud, set, leaves))),
+          map(build_patch_vmap(cloud, tree, set, {.few_patches = few_patches})),
+          query(cloud, tree, map, set) {}
+
+    static PointCloud with_areas(PointCloud cloud) {
+        if (cloud.areas.empty()) cloud.areas.resize(cloud.size(), 0.01F);
+        return cloud;
+    }
+
+    PointCloud cloud;
+    PatchSet set;
     Tree tree;
     VisibilityMap map;
     VmapQuery query;
@@ -202,6 +227,67 @@ TEST(VmapQuery, NearestPointAndNeighboursAreThoseOfASearchThroughAll) {
         EXPECT_EQ(q.query.points_around(place, 2 * size).size(), q.cloud.size());
     }
     EXPECT_EQ(Questioned(PointCloud{}).query.nearest_point({0, 0, 0}), no_index);
+}
+
+TEST(PatchQuery, AnswersAreThoseOfTheSegmentsThemselves) {
+    for (test::NamedCloud& scene : test::all_clouds(1500)) {
+        SCOPED_TRACE(scene.name);
+        const QuestionedPatches q(std::move(scene.cloud), 150, 2);
+        const PatchVisibility visibility(q.cloud, q.tree, q.set);
+        for (std::uint32_t x = 0; x < q.cloud.size(); x += 17)
+            for (std::uint32_t y = 0; y < q.cloud.size(); y += 5)
+                ASSERT_EQ(q.query.sees(x, y), visibility.sees(x, y)) << x << " " << y;
+    }
+}
+
+TEST(PatchQuery, StatusOfGroupsHoldsForAllTheirPairs) {
+    std::mt19937 random(4);
+    for (test::NamedCloud& scene : test::all_clouds(1500)) {
+        SCOPED_TRACE(scene.name);
+        const QuestionedPatches q(std::move(scene.cloud), 150);
+        for (int i = 0; i < 200; ++i) {
+            const auto group = [&] {
+                const V3d place = q.cloud.origin + V3d(q.cloud.positions[random() % q.cloud.size()]);
+                auto points = q.query.points_around(place, 0.02 * static_cast<double>(random() % 10));
+                if (points.empty()) points.push_back(q.query.nearest_point(place));
+                return points;
+            };
+            const auto xs = group();
+            const auto ys = group();
+            const PairStatus status = q.query.status(xs, ys);
+            if (status == PairStatus::partial) continue;
+            ASSERT_EQ(status, status_one_by_one(q.query, xs, ys));
+        }
+    }
+}
+
+TEST(PatchQuery, RaysMeetTheWallsOfARoomExactly) {
+    const QuestionedPatches q(test::empty_room(6000), 200);
+    std::mt19937 random(2);
+    const auto component = [&] {
+        return static_cast<double>(random()) / static_cast<double>(std::mt19937::max()) - 0.5;
+    };
+    for (int i = 0; i < 2000; ++i) {
+        const V3d direction(component(), component(), component());
+        const double to_wall = 0.5 / std::max({std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)});
+        const PointHit hit = q.query.first_point({0.5, 0.5, 0.5}, direction).value_or(PointHit{});
+        ASSERT_NEAR(hit.distance, to_wall * direction.length(), 1e-5);
+        const V3d meets = V3d(0.5) + direction * to_wall;
+        const double spacing = std::sqrt(6.0 / static_cast<double>(q.cloud.size()));
+        ASSERT_LE((V3d(q.cloud.positions[hit.point]) - meets).length(), 0.8 * spacing);
+    }
+    EXPECT_FALSE(q.query.first_point({0.5, 3, 0.5}, {0, 1, 0}));
+    EXPECT_NEAR(q.query.first_point({0.3, 1e5, 0.7}, {0, -1, 0}).value_or(PointHit{}).distance, 1e5 - 1, 0.01);
+}
+
+TEST(PatchQuery, ALampLeavesItsUmbraUnderATable) {
+    const QuestionedPatches q(test::packed_room(20'000), 500);
+    LightSource lamp;
+    lamp.position = {0.3, 0.95, 0.67};
+    const auto at = [&](const V3d& place) { return q.query.light_status(q.query.nearest_point(place), lamp); };
+    EXPECT_EQ(at({0.3, 0.6, 0.67}), PairStatus::visible) << "on top of the tall box";
+    EXPECT_EQ(at({0.07, 0.0, 0.67}), PairStatus::invisible) << "on the floor beside it";
+    EXPECT_EQ(at({0.9, 0.0, 0.9}), PairStatus::visible) << "on open floor";
 }
 
 TEST(ShowVisibility, PaintsWhatAPointSees) {
