@@ -77,13 +77,13 @@ private:
         for (const std::uint32_t n : {pair.first, pair.second})
             for (const Imath::V3d& corner : visibility_.box(n).corners()) box.extendBy(corner);
         std::array<HalfSpace, 6> around{};
-        for (int axis = 0; axis < 3; ++axis) {
+        const double growth = 2 * visibility_.box_growth();
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const auto i = static_cast<int>(axis);
             Imath::V3f unit(0);
-            unit[axis] = 1;
-            around.at(static_cast<std::size_t>(2 * axis)) = {
-                unit, static_cast<float>(box.max[axis] + 2 * visibility_.box_growth())};
-            around.at(static_cast<std::size_t>(2 * axis + 1)) = {
-                -unit, static_cast<float>(2 * visibility_.box_growth() - box.min[axis])};
+            unit[i] = 1;
+            around.at(2 * axis) = {unit, static_cast<float>(box.max[i] + growth)};
+            around.at(2 * axis + 1) = {-unit, static_cast<float>(growth - box.min[i])};
         }
         visibility_.bvh().polygons_in(around, found);
         return found;

@@ -22,6 +22,11 @@ public:
     [[nodiscard]] virtual bool sees(std::uint32_t x, std::uint32_t y) const = 0;
     [[nodiscard]] virtual PairStatus status(std::span<const std::uint32_t> xs, std::span<const std::uint32_t> ys,
                                             QueryCost& cost) const = 0;
+    /// What point x sees of a light's points: the truth about them, where `status` may say partial without a look.
+    [[nodiscard]] virtual PairStatus light_status(std::uint32_t x, std::span<const std::uint32_t> emitters,
+                                                  QueryCost& cost) const {
+        return status({&x, 1}, emitters, cost);
+    }
     [[nodiscard]] virtual std::optional<PointHit> first_point(const Imath::V3d& from,
                                                               const Imath::V3d& direction) const = 0;
     /// Whether a place in front of point x is reached in a straight line.

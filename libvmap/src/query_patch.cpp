@@ -57,6 +57,23 @@ public:
         return every ? PairStatus::visible : PairStatus::invisible;
     }
 
+    /// Points are tested only where the map cannot tell.
+    [[nodiscard]] PairStatus light_status(std::uint32_t x, std::span<const std::uint32_t> emitters,
+                                          QueryCost& cost) const override {
+        const PairStatus whole = status({&x, 1}, emitters, cost);
+        if (whole != PairStatus::partial) return whole;
+        bool some = false;
+        bool every = true;
+        for (const std::uint32_t y : emitters) {
+            ++cost.primitive_tests;
+            const bool seen = sees(x, y);
+            some |= seen;
+            every &= seen;
+            if (some && !every) return PairStatus::partial;
+        }
+        return every ? PairStatus::visible : PairStatus::invisible;
+    }
+
     [[nodiscard]] std::optional<PointHit> first_point(const V3d& from, const V3d& direction) const override {
         const double length = direction.length();
         if (tree.nodes.empty() || !(length > 0) || !std::isfinite(length)) return std::nullopt;

@@ -118,6 +118,12 @@ PairStatus VmapQuery::light_status(std::uint32_t x, const LightSource& light) co
     return engine_->reaches(x, position + to_light) ? PairStatus::visible : PairStatus::invisible;
 }
 
+PairStatus VmapQuery::light_status(std::uint32_t x, std::span<const std::uint32_t> emitters, QueryCost* cost) const {
+    assert(!emitters.empty());
+    QueryCost own;
+    return engine_->light_status(x, emitters, cost != nullptr ? *cost : own);
+}
+
 std::uint32_t VmapQuery::nearest_point(const V3d& place) const {
     std::uint32_t nearest = no_index;
     double limit = std::numeric_limits<double>::infinity();

@@ -71,13 +71,12 @@ public:
     /// behind the point's surface and outside of a spot's cone.
     [[nodiscard]] PairStatus light_status(std::uint32_t x, const LightSource& light) const;
 
-    /// Query 4 for a light with a surface: partial is the penumbra.
+    /// Query 4 for a light with a surface: partial is the penumbra. Under rule `patch` points are tested where the map
+    /// cannot tell.
     ///
     /// - emitters: the points of the light, indices into the cloud, at least one
     [[nodiscard]] PairStatus light_status(std::uint32_t x, std::span<const std::uint32_t> emitters,
-                                          QueryCost* cost = nullptr) const {
-        return status({&x, 1}, emitters, cost);
-    }
+                                          QueryCost* cost = nullptr) const;
 
     /// The point of the cloud next to a place.
     ///

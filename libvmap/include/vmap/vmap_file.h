@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 /// \file
-/// The .vmap file: points, lights, cameras, tree and visibility map, built once and used again. docs/vmap-file.md has
+/// The .vmap file: points, lights, cameras, tree and visibility map, built once and used again. docs/vmap.md has
 /// the layout: little-endian chunks, each with a name, a size and a checksum.
 #pragma once
 

@@ -13,6 +13,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <random>
@@ -288,6 +289,19 @@ TEST(PatchQuery, ALampLeavesItsUmbraUnderATable) {
     EXPECT_EQ(at({0.3, 0.6, 0.67}), PairStatus::visible) << "on top of the tall box";
     EXPECT_EQ(at({0.07, 0.0, 0.67}), PairStatus::invisible) << "on the floor beside it";
     EXPECT_EQ(at({0.9, 0.0, 0.9}), PairStatus::visible) << "on open floor";
+}
+
+TEST(PatchQuery, ShadowsOfASurfaceAreThoseOfItsPoints) {
+    const QuestionedPatches q(test::packed_room(8000), 200);
+    const std::vector<std::uint32_t> lamp = q.query.points_around({0.5, 1, 0.5}, 0.15);
+    ASSERT_GT(lamp.size(), 20U);
+    std::array<int, 3> found{};
+    for (std::uint32_t x = 0; x < q.cloud.size(); x += 13) {
+        const PairStatus status = q.query.light_status(x, lamp);
+        ASSERT_EQ(status, status_one_by_one(q.query, {&x, 1}, lamp)) << x;
+        ++found.at(static_cast<std::size_t>(status));
+    }
+    EXPECT_GT(*std::ranges::min_element(found), 10) << "lit points, umbra and penumbra all occur";
 }
 
 TEST(ShowVisibility, PaintsWhatAPointSees) {
