@@ -13,5 +13,7 @@ namespace vmap {
 [[nodiscard]] Command add_render_command(CLI::App& program);
 [[nodiscard]] Command add_export_command(CLI::App& program);
 [[nodiscard]] Command add_compare_command(CLI::App& program);
+[[nodiscard]] Command add_build_command(CLI::App& program);
+[[nodiscard]] Command add_query_command(CLI::App& program);
 
 }  // namespace vmap

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 /// \file
-/// vmap compare: how much a picture or a lit cloud differs from another one.
+/// vmap compare: how much a picture, a lit cloud or a visibility map differs from another one.
 #include "commands.h"
 #include "distinct_files.h"
+#include "map_facts.h"
 
 #include <vmap/compare/comparison.h>
 #include <vmap/compare/html_report.h>
@@ -25,6 +26,10 @@ struct CompareOptions {
     ComparisonLimits limits;
     std::string html;
     std::string json;
+
+    [[nodiscard]] bool has_limits() const {
+        return limits.mean || limits.median || limits.p95 || limits.p99 || limits.rmse || limits.bias || limits.flip;
+    }
 };
 
 void print_text(const Comparison& comparison) {
@@ -51,8 +56,35 @@ std::string joined(const std::vector<std::string>& lines) {
     return text;
 }
 
+/// Maps are alike or not: there is nothing to limit and nothing to see.
+void run_map_compare(const CompareOptions& options, Job& job) {
+    if (!is_vmap_file(options.result) || !is_vmap_file(options.reference))
+        throw UsageError(fmt::format("{} and {}: only one is a visibility map; expected two files of one kind",
+                                     printable(options.result), printable(options.reference)));
+    if (options.has_limits() || !options.html.empty())
+        throw UsageError("--html and --max-...: expected pictures or clouds, not visibility maps");
+    std::optional<FileWriter> json;
+    if (!options.json.empty()) json.emplace(options.json);
+    const nlohmann::ordered_json parts = compare_maps(options.result, options.reference);
+    if (json) {
+        json->stream() << parts.dump(1) << '\n';
+        json->finish();
+        json->commit();
+    }
+    std::vector<std::string> different;
+    for (const auto& [part, difference] : parts.items()) {
+        const auto text = difference.get<std::string>();
+        if (options.json != "-" && !job.options().quiet) fmt::print("{:<13} {}\n", part, text);
+        if (text != "same") different.push_back(part + " " + text);
+    }
+    if (!different.empty())
+        throw Error(ExitCode::comparison_failed, fmt::format("{} against {}: {}", printable(options.result),
+                                                             printable(options.reference), joined(different)));
+}
+
 void run_compare(const CompareOptions& options, Job& job) {
     require_distinct_files({options.result, options.reference}, {options.html, options.json});
+    if (is_vmap_file(options.result) || is_vmap_file(options.reference)) return run_map_compare(options, job);
     std::optional<FileWriter> html;
     std::optional<FileWriter> json;
     if (!options.html.empty()) html.emplace(options.html);
@@ -80,10 +112,11 @@ void run_compare(const CompareOptions& options, Job& job) {
 
 Command add_compare_command(CLI::App& program) {
     CLI::App* app =
-        program.add_subcommand("compare", "Tells how much a picture or a lit cloud differs from another one");
+        program.add_subcommand("compare", "Tells how much a picture, a lit cloud or a map differs from another one");
     app->footer(
         "Pictures (EXR, PNG) are compared by pixel, lit clouds by nearest point of the same side. All figures are\n"
-        "fractions of the mean of the reference; FLIP is between 0 and 1. Exceeded limits give exit code 5.\n"
+        "fractions of the mean of the reference; FLIP is between 0 and 1. Exceeded limits give exit code 5, and so do\n"
+        "visibility maps (.vmap) that differ in anything but the seconds they took.\n"
         "Example: vmap compare ours.exr povray.exr --max-median 0.02 --max-p95 0.06 --html report.html");
     auto options = std::make_shared<CompareOptions>();
     app->add_option("A", options->result, "What is judged")->required();

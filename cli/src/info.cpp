@@ -2,6 +2,7 @@
 /// \file
 /// vmap info: what is in a file and what the toolkit makes of it.
 #include "commands.h"
+#include "map_facts.h"
 
 #include <vmap/importers/input.h>
 #include <vmap/light_source.h>
@@ -81,17 +82,21 @@ void print_text(const Json& json) {
     for (const auto& [key, value] : json.items()) {
         const std::string text =
             value.is_string() ? value.get<std::string>() : value.dump(-1, ' ', false, Json::error_handler_t::replace);
-        fmt::print("{:<14} {}\n", key, text);
+        fmt::print("{:<27} {}\n", key, text);
     }
 }
 
-void run_info(const InfoOptions& options, Job& job) {
+Json scene_facts(const InfoOptions& options, Job& job) {
     const Input input =
         read_input(options.file, {.scene = options.scene.empty() ? std::optional<std::string>() : options.scene,
                                   .light_units = LightUnits::compat,
                                   .up = std::nullopt});
     job.warn(input.scene.warnings);
-    const Json json = to_json(options, input, summarize(input));
+    return to_json(options, input, summarize(input));
+}
+
+void run_info(const InfoOptions& options, Job& job) {
+    const Json json = is_vmap_file(options.file) ? map_facts(options.file) : scene_facts(options, job);
     if (options.json)
         fmt::print("{}\n", json.dump(1, ' ', false, Json::error_handler_t::replace));
     else

@@ -39,12 +39,6 @@ double mean_irradiance(const LitCloud& cloud) {
     return area > 0 ? sum / area : 0;
 }
 
-double total_area(const PointCloud& cloud) {
-    double area = 0;
-    for (const float a : cloud.areas) area += static_cast<double>(a);
-    return area;
-}
-
 void run_light(LightOptions options, Job& job) {
     const Stopwatch total;
     std::vector<std::string> written = options.output.paths;
@@ -85,6 +79,7 @@ void run_light(LightOptions options, Job& job) {
                                      .total = total.seconds()},
                          .light = light.report,
                          .tolerance = options.light.tolerance,
+                         .map = std::nullopt,
                          .outputs = outputs.paths()};
         write_report(*report_file, report, job);
     }

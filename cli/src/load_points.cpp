@@ -79,6 +79,12 @@ void add_load_options(CLI::App& app, LoadOptions& options) {
         ->type_name("LIGHT");
 }
 
+double total_area(const PointCloud& cloud) {
+    double area = 0;
+    for (const float a : cloud.areas) area += static_cast<double>(a);
+    return area;
+}
+
 LoadedPoints load_points(const LoadOptions& options, Job& job) {
     LoadedPoints loaded;
     for (const std::string& light : options.lights) loaded.lights.push_back(parse_light(light));

@@ -39,6 +39,9 @@ struct LoadedPoints {
     double sample_seconds = 0;
 };
 
+/// Surface that the points stand for, world units squared.
+[[nodiscard]] double total_area(const PointCloud& cloud);
+
 /// - throws what read_input and sample_surface throw
 [[nodiscard]] LoadedPoints load_points(const LoadOptions& options, Job& job);
 

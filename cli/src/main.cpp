@@ -67,7 +67,8 @@ int main_of(int argc, const char* const* argv) {
 
     CommonOptions options;
     const std::vector<Command> commands{add_light_command(program),  add_sample_command(program),
-                                        add_info_command(program),   add_render_command(program),
+                                        add_info_command(program),   add_build_command(program),
+                                        add_query_command(program),  add_render_command(program),
                                         add_export_command(program), add_compare_command(program)};
     for (const Command& command : commands) add_common_options(*command.app, options);
 

@@ -28,16 +28,17 @@ std::size_t peak_memory() {
 
 void write_report(FileWriter& file, const JobReport& report, const Job& job) {
     const LightReport light = report.light.value_or(LightReport{});
+    const MapCounts map = report.map.value_or(MapCounts{light.nodes, light.leaves, light.patches, 0});
     Json json{{"version", version},
               {"input", printable(report.input)},
               {"seed", job.options().seed},
               {"threads", tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)},
               {"points", report.points},
               {"area", report.area},
-              {"nodes", light.nodes},
-              {"leaves", light.leaves},
-              {"patches", light.patches},
-              {"links", 0},
+              {"nodes", map.nodes},
+              {"leaves", map.leaves},
+              {"patches", map.patches},
+              {"links", map.links},
               {"lights", report.lights},
               {"seconds", seconds_of(report.seconds)}};
     if (report.light) {

@@ -26,6 +26,14 @@ struct StageSeconds {
     double total = 0;
 };
 
+/// Of a visibility map.
+struct MapCounts {
+    std::size_t nodes = 0;
+    std::size_t leaves = 0;
+    std::size_t patches = 0;
+    std::size_t links = 0;  ///< ordered pairs
+};
+
 struct JobReport {
     std::string input;
     std::size_t points = 0;
@@ -35,6 +43,7 @@ struct JobReport {
     StageSeconds seconds{};
     std::optional<LightReport> light;  ///< of jobs that lit something
     double tolerance = 0;
+    std::optional<MapCounts> map;  ///< of jobs that built one
     std::vector<std::string> outputs;
 };
 

@@ -34,17 +34,16 @@ void run_sample(const SampleOptions& options, Job& job) {
     const Stopwatch writing;
     outputs.write(loaded.cloud, loaded.scene, loaded.info, job);
     if (report_file) {
-        double area = 0;
-        for (const float a : loaded.cloud.points.areas) area += static_cast<double>(a);
         const JobReport report{.input = options.load.file,
                                .points = loaded.cloud.points.size(),
                                .lights = loaded.lights.size(),
-                               .area = area,
+                               .area = total_area(loaded.cloud.points),
                                .seconds = {.import = loaded.import_seconds,
                                            .sample = loaded.sample_seconds,
                                            .write = writing.seconds(),
                                            .total = total.seconds()},
                                .light = std::nullopt,
+                               .map = std::nullopt,
                                .outputs = outputs.paths()};
         write_report(*report_file, report, job);
     }
