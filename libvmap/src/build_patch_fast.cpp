@@ -98,34 +98,50 @@ private:
     PatchOutcome decide(const NodePair& pair, Facing parent, const DiscList& candidates) {
         const Facing facing = pairs_.facing(pair, parent);
         if (facing == Facing::none) return done(pair, PatchOutcome::averted);
+        // Most pairs are leaves, and most of those need no look beside their middle.
+        std::size_t crossing = 0;
+        if (const auto outcome = decide_by_middle(pair, facing, candidates, crossing)) return done(pair, *outcome);
         DiscList left(candidates.size());
         static_cast<void>(cull_discs(candidates, boxes_[pair.first], boxes_[pair.second], false, left));
-        if (const auto outcome = decide_now(pair, facing, left)) return done(pair, *outcome);
+        if (const auto outcome = decide_by_shaft(pair, facing, left, crossing)) return done(pair, *outcome);
+        return decide_parts(pair, facing, left);
+    }
 
+    PatchOutcome decide_parts(const NodePair& pair, Facing facing, const DiscList& candidates) {
         std::vector<NodePair> parts;
         split_.for_each_part(tree_, pair, [&](const NodePair& part) { parts.push_back(part); });
         std::vector<PatchOutcome> found(parts.size());
-        tbb::task_group tasks;
-        for (std::size_t i = 0; i < parts.size(); ++i)
-            run_or_do(tasks, parts[i],
-                      [this, &found, &parts, &left, facing, i] { found[i] = decide(parts[i], facing, left); });
-        tasks.wait();
+        const auto decide_part = [&](std::size_t i) { found[i] = decide(parts[i], facing, candidates); };
+        if (leaf_pairs(pair) < least_task_pairs) {
+            for (std::size_t i = 0; i < parts.size(); ++i) decide_part(i);
+        } else {
+            tbb::task_group tasks;
+            for (std::size_t i = 0; i < parts.size(); ++i)
+                run_or_do(tasks, parts[i], [&decide_part, i] { decide_part(i); });
+            tasks.wait();
+        }
         const PatchOutcome joined = PatchPairs::join(found);
         if (joined == PatchOutcome::partial)
             for (std::size_t i = 0; i < parts.size(); ++i) keep(parts[i], found[i]);
         return joined;
     }
 
-    [[nodiscard]] std::optional<PatchOutcome> decide_now(const NodePair& pair, Facing facing,
-                                                         const DiscList& left) const {
-        if (tree_.nodes[pair.first].patch == no_index || tree_.nodes[pair.second].patch == no_index) return {};
+    [[nodiscard]] std::optional<PatchOutcome> decide_by_middle(const NodePair& pair, Facing facing,
+                                                               const DiscList& candidates,
+                                                               std::size_t& crossing) const {
+        if (!pairs_.are_surface(pair)) return std::nullopt;
         std::vector<std::uint32_t> on_middle;
-        find_on_middle(left, boxes_[pair.first].center, boxes_[pair.second].center, on_middle);
+        find_on_middle(candidates, boxes_[pair.first].center, boxes_[pair.second].center, on_middle);
+        return pairs_.decide_by_middle(pair, facing, on_middle, crossing);
+    }
+
+    [[nodiscard]] std::optional<PatchOutcome> decide_by_shaft(const NodePair& pair, Facing facing, const DiscList& left,
+                                                              std::size_t crossing) const {
         std::vector<std::uint32_t> between;
-        if (facing == Facing::all)
+        if (pairs_.may_be_visible(facing, crossing))
             for (std::size_t i = 0; i < left.size(); ++i)
                 between.push_back(std::bit_cast<std::uint32_t>(left.field(DiscList::leaf)[i]));
-        return pairs_.decide(pair, facing, on_middle, between);
+        return pairs_.decide_by_shaft(pair, facing, crossing, between);
     }
 
     const Tree& tree_;

@@ -41,18 +41,37 @@ public:
     [[nodiscard]] std::optional<PatchOutcome> decide(const NodePair& pair, Facing facing,
                                                      std::span<const std::uint32_t> on_middle,
                                                      std::span<const std::uint32_t> between) const {
+        std::size_t crossing = 0;
+        if (const auto outcome = decide_by_middle(pair, facing, on_middle, crossing)) return outcome;
+        return decide_by_shaft(pair, facing, crossing, between);
+    }
+
+    /// The first half of it, which does without the patches beside the middle: one patch may hide all, and leaves of
+    /// which several may hide something cannot be split.
+    ///
+    /// - crossing: number of patches that cross the segment between the middles
+    [[nodiscard]] std::optional<PatchOutcome> decide_by_middle(const NodePair& pair, Facing facing,
+                                                               std::span<const std::uint32_t> on_middle,
+                                                               std::size_t& crossing) const {
+        if (!are_surface(pair)) return std::nullopt;
         const auto [a, b] = pair;
-        const TreeNode& first = visibility_.tree().nodes[a];
-        const TreeNode& second = visibility_.tree().nodes[b];
-        if (first.patch == no_index || second.patch == no_index) return std::nullopt;
-        std::size_t entered = 0;
         for (const std::uint32_t k : on_middle) {
             if (!visibility_.crosses_middle(k, a, b)) continue;
             if (visibility_.covers(k, a, b)) return PatchOutcome::hidden;
-            ++entered;
+            ++crossing;
         }
-        if (facing == Facing::all && entered <= few_patches_) {
+        if (are_leaves(pair) && !may_be_visible(facing, crossing)) return PatchOutcome::partial;
+        return std::nullopt;
+    }
+
+    /// The second half.
+    [[nodiscard]] std::optional<PatchOutcome> decide_by_shaft(const NodePair& pair, Facing facing, std::size_t crossing,
+                                                              std::span<const std::uint32_t> between) const {
+        if (!are_surface(pair)) return std::nullopt;
+        const auto [a, b] = pair;
+        if (may_be_visible(facing, crossing)) {
             const PatchShaft shaft = visibility_.shaft(a, b);
+            std::size_t entered = crossing;
             for (const std::uint32_t k : between) {
                 if (visibility_.crosses_middle(k, a, b) || !visibility_.enters(k, a, b, shaft)) continue;
                 if (++entered > few_patches_) break;
@@ -60,8 +79,18 @@ public:
             if (entered == 0) return PatchOutcome::visible;
             if (entered <= few_patches_) return PatchOutcome::partial;
         }
-        if (first.is_leaf() && second.is_leaf()) return PatchOutcome::partial;
+        if (are_leaves(pair)) return PatchOutcome::partial;
         return std::nullopt;
+    }
+
+    /// Whether both nodes are parts of patches; others are decided by facing alone.
+    [[nodiscard]] bool are_surface(const NodePair& pair) const {
+        return node(pair.first).patch != no_index && node(pair.second).patch != no_index;
+    }
+
+    /// Whether a pair may turn out visible, or partial before it is split to the end: only then its shaft matters.
+    [[nodiscard]] bool may_be_visible(Facing facing, std::size_t crossing) const {
+        return facing == Facing::all && crossing <= few_patches_;
     }
 
     /// What the outcomes of all parts of a pair come to.
@@ -76,6 +105,11 @@ public:
     }
 
 private:
+    [[nodiscard]] const TreeNode& node(std::uint32_t n) const { return visibility_.tree().nodes[n]; }
+    [[nodiscard]] bool are_leaves(const NodePair& pair) const {
+        return node(pair.first).is_leaf() && node(pair.second).is_leaf();
+    }
+
     const PatchVisibility& visibility_;
     std::uint32_t few_patches_;
 };
