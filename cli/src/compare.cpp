@@ -75,7 +75,7 @@ void run_map_compare(const CompareOptions& options, Job& job) {
     for (const auto& [part, difference] : parts.items()) {
         const auto text = difference.get<std::string>();
         if (options.json != "-" && !job.options().quiet) fmt::print("{:<13} {}\n", part, text);
-        if (text != "same") different.push_back(part + " " + text);
+        if (text != "same") different.push_back(fmt::format("{} {}", part, text));
     }
     if (!different.empty())
         throw Error(ExitCode::comparison_failed, fmt::format("{} against {}: {}", printable(options.result),
