@@ -160,7 +160,11 @@ private:
                 ray.origin = receiver.position + receiver.normal * (2 * surface_.set.patches[hit.polygon].spacing());
                 hit = surface_.bvh.first_hit(ray);
             }
-            if (!hit || !hit.front) continue;
+            if (!hit || !hit.front) {
+                if (hit) ray.t_max = hit.t;
+                hit = surface_.hit_in_crack(ray);
+            }
+            if (!hit) continue;
             const Patch& met = surface_.set.patches[hit.polygon];
             const TexelRaster& raster = texels_.raster(hit.polygon);
             hits_[r * hits.size() + k] =

@@ -17,6 +17,10 @@ using Imath::C3f;
 
 /// With more pairs of a tile and an emitter than this the rays of the indirect light see the emitters.
 constexpr std::size_t most_emitter_pairs = 4'000'000;
+/// So few emitters always get their closed form.
+constexpr std::size_t few_emitters = 6;
+/// Emitters at most so many times as bright as the scene on average make up much of what rays meet.
+constexpr double dim_emission = 4;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -30,6 +34,26 @@ void check(const PointCloud& cloud, std::span<const LightSource> lights, const L
     const bool lit =
         std::any_of(lights.begin(), lights.end(), [&](const LightSource& light) { return positive(light.intensity); });
     if (!glows && !lit) throw UnsupportedInput("nothing emits light: expected a light source or an emissive surface");
+}
+
+/// Whether the rays of the indirect light shall see the emitters: they do it well where the emitters fill a good part
+/// of the view, and have to where the closed form of every emitter at every tile would take too long.
+bool shall_gather(const Surface& surface, std::span<const Emitter> emitters) {
+    if (emitters.size() <= few_emitters) return false;
+    if (emitters.size() * surface.tiles.size() > most_emitter_pairs) return true;
+    const PointCloud& cloud = surface.cloud;
+    const auto mean = [](const C3f& c) { return static_cast<double>(c.x + c.y + c.z) / 3; };
+    double emitted = 0;
+    double absorbed = 0;
+    for (std::size_t i = 0; i < cloud.size(); ++i) {
+        const auto area = static_cast<double>(cloud.areas[i]);
+        emitted += mean(cloud.emission[i]) * area;
+        absorbed += std::max(1 - mean(cloud.albedo[i]), 0.05) * area;
+    }
+    // The radiance of a closed scene whose light settles at what is absorbed.
+    const double average = emitted / absorbed;
+    return std::all_of(emitters.begin(), emitters.end(),
+                       [&](const Emitter& emitter) { return mean(emitter.radiance) <= dim_emission * average; });
 }
 
 }  // namespace
@@ -50,7 +74,7 @@ LightResult compute_light(const PointCloud& cloud, std::span<const LightSource> 
 
     start = std::chrono::steady_clock::now();
     std::vector<Emitter> emitters = find_emitters(surface);
-    const bool gather_emission = emitters.size() > 6 && emitters.size() * surface.tiles.size() > most_emitter_pairs;
+    const bool gather_emission = shall_gather(surface, emitters);
     if (gather_emission) emitters.clear();
     result.irradiance = direct_light(surface, emitters, lights, config.seed, progress);
     result.report.direct_seconds = seconds_since(start);

@@ -30,11 +30,26 @@ void cut_tiles(const PointCloud& cloud, std::vector<std::uint32_t>& order, std::
     cut_tiles(cloud, order, patch, first + half, count - half, tiles);
 }
 
+/// The outlines with those that emit moved forward a little: of two sheets in one plane that face the same way, as a
+/// lamp drawn onto its ceiling, rays shall meet the lamp.
+PolygonSet emitters_in_front(const PatchSet& set, float step) {
+    PolygonSet outlines;
+    std::vector<Imath::V3f> vertices;
+    for (std::size_t p = 0; p < set.patches.size(); ++p) {
+        vertices.assign(set.outlines[p].begin(), set.outlines[p].end());
+        if (set.patches[p].emits)
+            for (Imath::V3f& v : vertices) v += set.patches[p].normal * step;
+        outlines.add(vertices);
+    }
+    return outlines;
+}
+
 }  // namespace
 
 Surface::Surface(const PointCloud& points) : cloud(points), set(find_patches(points)) {
     for (const Imath::V3f& p : cloud.positions) bounds.extendBy(p);
     diagonal = std::max(bounds.size().length(), 1e-30F);
+    if (cloud.emits()) set.outlines = emitters_in_front(set, 4e-6F * diagonal);
 
     std::vector<std::vector<Tile>> cut(set.patches.size());
     tbb::parallel_for(std::size_t{0}, set.patches.size(), [&](std::size_t p) {
@@ -48,6 +63,24 @@ Surface::Surface(const PointCloud& points) : cloud(points), set(find_patches(poi
     for (const Patch& patch : set.patches) dilation.push_back(patch.flat ? 1e-6F * diagonal : 0.35F * patch.spacing());
     bvh = PolygonBvh(set.outlines, {dilation});
     pencils = PencilTracer(set.outlines, dilation);
+
+    PolygonSet outlines;
+    std::vector<float> growth;
+    for (std::uint32_t p = 0; p < set.patches.size(); ++p) {
+        if (!set.patches[p].loose) continue;
+        outlines.add(set.outlines[p]);
+        growth.push_back(set.patches[p].spacing());
+        loose_patches.push_back(p);
+    }
+    loose = PolygonBvh(outlines, {growth});
+}
+
+RayHit Surface::hit_in_crack(const Ray& ray) const {
+    if (loose.empty()) return {};
+    RayHit hit = loose.first_hit(ray);
+    if (!hit || !hit.front) return {};
+    hit.polygon = loose_patches[hit.polygon];
+    return hit;
 }
 
 }  // namespace vmap

@@ -33,8 +33,14 @@ struct Surface {
     std::vector<Tile> tiles;  ///< patch after patch
     PolygonBvh bvh;           ///< over the outlines, those of curved groups grown against cracks
     PencilTracer pencils;     ///< over the same outlines, for rays from one place
-    Imath::Box3f bounds;      ///< of all points
-    float diagonal = 0;       ///< of the bounds, world units; never 0
+    PolygonBvh loose;         ///< over the outlines of loose patches, grown by a spacing: what a ray slipped between
+    std::vector<std::uint32_t> loose_patches;  ///< that its polygons belong to
+    Imath::Box3f bounds;                       ///< of all points
+    float diagonal = 0;                        ///< of the bounds, world units; never 0
+
+    /// What a ray meets that found nothing, or only the back of something, because patches leave a crack: the nearest
+    /// loose patch that faces it.
+    [[nodiscard]] RayHit hit_in_crack(const Ray& ray) const;
 
     /// Normal that light is gathered over: a flat patch's own, else the point's.
     [[nodiscard]] const Imath::V3f& normal_of(const Patch& patch, std::uint32_t point) const {

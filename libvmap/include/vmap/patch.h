@@ -27,6 +27,7 @@ struct Patch {
     std::uint32_t point_count = 0;
     float area = 0;      ///< sum of the areas of its points
     bool flat = false;   ///< planar with a true outline; else a small group of a curved surface
+    bool loose = false;  ///< an edge adjoins another patch without lying on a common line: a ray may slip between them
     bool emits = false;  ///< every point emits, or none does
 
     /// Mean distance of neighbouring points, world units.

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+/// \file
+/// Curved surface as small groups of points, bounded in number, extent and range of normals.
+#pragma once
+
+#include "patch_piece.h"
+
+namespace vmap {
+
+/// - points: indices into the cloud, reordered
+/// - groups: receives the groups
+void cut_into_groups(const PointCloud& cloud, std::span<std::uint32_t> points, const PatchConfig& config,
+                     std::vector<Piece>& groups);
+
+}  // namespace vmap
