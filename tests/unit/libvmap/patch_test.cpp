@@ -98,6 +98,23 @@ TEST(FindPatches, WallWithADoorIsCutIntoConvexPieces) {
     EXPECT_NEAR(area, 10.0, 0.05);
 }
 
+TEST(FindPatches, NoPatchHasBothSidesOfARoomsPartitionInIt) {
+    PointCloud cloud = closed_box(40);
+    std::mt19937 random(6);
+    // A sheet with two sides at x = 0.3 from wall to wall, floor to ceiling: it parts four sides of the box.
+    add_wall(cloud, V3f(0.3F, 0, 0), V3f(0, 1, 0), V3f(0, 0, 1), 40, random);
+    add_wall(cloud, V3f(0.3F, 0, 0), V3f(0, 0, 1), V3f(0, 1, 0), 40, random);
+    const PatchSet set = find_patches(cloud);
+    EXPECT_EQ(set.patches.size(), 12U);
+    for (const Patch& patch : set.patches) {
+        const auto beyond = [&](std::uint32_t i) { return cloud.positions[i].x > 0.3F + 1e-5F; };
+        const auto before = [&](std::uint32_t i) { return cloud.positions[i].x < 0.3F - 1e-5F; };
+        const std::span<const std::uint32_t> points = set.points_of(patch);
+        EXPECT_FALSE(std::any_of(points.begin(), points.end(), beyond) &&
+                     std::any_of(points.begin(), points.end(), before));
+    }
+}
+
 TEST(FindPatches, EachSideOfASheetIsOneFlatPatch) {
     for (const float thickness : {0.0F, 1e-4F}) {
         std::mt19937 random(5);
