@@ -19,7 +19,8 @@ using Imath::V3f;
 
 class GroupCutter {
 public:
-    GroupCutter(const PointCloud& cloud, const PatchConfig& config) : cloud_(cloud), config_(config) {}
+    GroupCutter(const PointCloud& cloud, std::size_t most_points, float normal_range)
+        : cloud_(cloud), most_points_(most_points), normal_range_(normal_range) {}
 
     void cut(std::span<std::uint32_t> points, std::vector<Piece>& groups) const {
         if (points.empty()) return;
@@ -31,14 +32,14 @@ public:
         }
         const double area = area_of(cloud_, points);
         const double spacing = std::sqrt(area / static_cast<double>(points.size()));
-        const auto reach = static_cast<float>(1.5 * spacing * std::sqrt(static_cast<double>(config_.group_points)));
+        const auto reach = static_cast<float>(1.5 * spacing * std::sqrt(static_cast<double>(most_points_)));
         const V3f size = places.size();
         const V3f range = normals.size();
         const int place_axis = static_cast<int>(places.majorAxis());
         const int normal_axis = static_cast<int>(normals.majorAxis());
         const float place_excess = size[place_axis] / reach;
-        const float normal_excess = range[normal_axis] / config_.group_normal_range;
-        const bool small = points.size() <= config_.group_points && place_excess <= 2;
+        const float normal_excess = range[normal_axis] / normal_range_;
+        const bool small = points.size() <= most_points_ && place_excess <= 2;
         if (points.size() == 1 || (small && normal_excess <= 1)) {
             groups.push_back(group_of(points, area, spacing));
             return;
@@ -83,14 +84,15 @@ private:
     }
 
     const PointCloud& cloud_;
-    const PatchConfig& config_;
+    std::size_t most_points_;
+    float normal_range_;
 };
 
 }  // namespace
 
-void cut_into_groups(const PointCloud& cloud, std::span<std::uint32_t> points, const PatchConfig& config,
-                     std::vector<Piece>& groups) {
-    GroupCutter(cloud, config).cut(points, groups);
+void cut_into_groups(const PointCloud& cloud, std::span<std::uint32_t> points, std::size_t most_points,
+                     float normal_range, std::vector<Piece>& groups) {
+    GroupCutter(cloud, most_points, normal_range).cut(points, groups);
 }
 
 }  // namespace vmap

@@ -8,8 +8,10 @@
 namespace vmap {
 
 /// - points: indices into the cloud, reordered
+/// - most_points: of a group
+/// - normal_range: by at most about which the normals of a group differ, radians
 /// - groups: receives the groups
-void cut_into_groups(const PointCloud& cloud, std::span<std::uint32_t> points, const PatchConfig& config,
-                     std::vector<Piece>& groups);
+void cut_into_groups(const PointCloud& cloud, std::span<std::uint32_t> points, std::size_t most_points,
+                     float normal_range, std::vector<Piece>& groups);
 
 }  // namespace vmap

@@ -50,9 +50,17 @@ C3f CurvedLight::at(std::uint32_t group, const V3f& position, const V3f& normal)
 }
 
 C3f CurvedLight::value(std::uint32_t group, const V3f& normal) const {
-    const VectorIrradiance& field = fields_[group];
-    return {std::max(field[0].dot(normal), 0.0F), std::max(field[1].dot(normal), 0.0F),
-            std::max(field[2].dot(normal), 0.0F)};
+    // Over a normal that turns away from the group's the hemisphere that was looked at sinks on one side, and one that
+    // was not rises on the other. Light from all around does not change by that, so only what lies along the surface
+    // turns with the normal.
+    const V3f& own = surface_->set.patches[group].normal;
+    const float lost = 1 - own.dot(normal);
+    C3f light;
+    for (int c = 0; c < 3; ++c) {
+        const V3f& field = fields_[group].at(static_cast<std::size_t>(c));
+        light[c] = std::max(field.dot(normal) + field.dot(own) * lost, 0.0F);
+    }
+    return light;
 }
 
 std::uint64_t CurvedLight::key(const V3f& p, const Imath::V3i& step) const {

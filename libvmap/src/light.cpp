@@ -15,8 +15,6 @@ namespace {
 
 using Imath::C3f;
 
-/// With more pairs of a tile and an emitter than this the rays of the indirect light see the emitters.
-constexpr std::size_t most_emitter_pairs = 4'000'000;
 /// So few emitters always get their closed form.
 constexpr std::size_t few_emitters = 6;
 /// Emitters at most so many times as bright as the scene on average make up much of what rays meet.
@@ -40,7 +38,6 @@ void check(const PointCloud& cloud, std::span<const LightSource> lights, const L
 /// of the view, and have to where the closed form of every emitter at every tile would take too long.
 bool shall_gather(const Surface& surface, std::span<const Emitter> emitters) {
     if (emitters.size() <= few_emitters) return false;
-    if (emitters.size() * surface.tiles.size() > most_emitter_pairs) return true;
     const PointCloud& cloud = surface.cloud;
     const auto mean = [](const C3f& c) { return static_cast<double>(c.x + c.y + c.z) / 3; };
     double emitted = 0;
@@ -76,7 +73,7 @@ LightResult compute_light(const PointCloud& cloud, std::span<const LightSource> 
     std::vector<Emitter> emitters = find_emitters(surface);
     const bool gather_emission = shall_gather(surface, emitters);
     if (gather_emission) emitters.clear();
-    result.irradiance = direct_light(surface, emitters, lights, config.seed, progress);
+    result.irradiance = direct_light(surface, emitters, lights, config.tolerance, config.seed, progress);
     result.report.direct_seconds = seconds_since(start);
 
     start = std::chrono::steady_clock::now();

@@ -154,7 +154,8 @@ void add_pieces(const PointCloud& cloud, Indices points, bool emits, const Patch
         pieces.insert(pieces.end(), std::make_move_iterator(cut[i].begin()), std::make_move_iterator(cut[i].end()));
         flat.rest.insert(flat.rest.end(), rest[i].begin(), rest[i].end());
     }
-    cut_into_groups(cloud, flat.rest, config, pieces);
+    cut_into_groups(cloud, flat.rest, config.group_points, emits ? config.lamp_normal_range : config.group_normal_range,
+                    pieces);
     for (std::size_t i = first; i < pieces.size(); ++i) pieces[i].patch.emits = emits;
 }
 

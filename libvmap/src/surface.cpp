@@ -60,7 +60,7 @@ Surface::Surface(const PointCloud& points) : cloud(points), set(find_patches(poi
 
     std::vector<float> dilation;
     dilation.reserve(set.patches.size());
-    for (const Patch& patch : set.patches) dilation.push_back(patch.flat ? 1e-6F * diagonal : 0.35F * patch.spacing());
+    for (const Patch& patch : set.patches) dilation.push_back(patch.flat ? 1e-6F * diagonal : 0.15F * patch.spacing());
     bvh = PolygonBvh(set.outlines, {dilation});
     pencils = PencilTracer(set.outlines, dilation);
 

@@ -48,7 +48,7 @@ struct Surface {
     }
     /// How far above the surface rays of a patch start, world units: far enough to leave its neighbours.
     [[nodiscard]] float gather_offset(const Patch& patch) const {
-        return patch.flat ? 2e-5F * diagonal : 0.35F * patch.spacing();
+        return patch.flat ? 2e-5F * diagonal : 0.05F * patch.spacing();
     }
 };
 

@@ -57,6 +57,37 @@ std::vector<std::size_t> counts_of_surfaces(const LitSurface& surface, std::size
     return counts;
 }
 
+/// Fewer points than that make a lamp of flat facets that shows in its light,
+constexpr std::size_t least_lamp_points = 1000;
+/// but more than that share of all points are not spent on it.
+constexpr double most_lamp_share = 0.05;
+
+/// Points for the surfaces that emit: in proportion to their area, or more where that is too few for their shape.
+std::size_t number_of_lamp_points(double lamp_area, double area, std::size_t total) {
+    const double even = std::round(lamp_area / area * static_cast<double>(total));
+    const double wanted = std::min<double>(least_lamp_points, most_lamp_share * static_cast<double>(total));
+    return static_cast<std::size_t>(std::max(even, std::floor(wanted)));
+}
+
+/// The triangles of materials that emit, taken out of a surface that has others too; none when lamps have enough
+/// points.
+LitSurface take_lamps(LitSurface& surface, std::size_t total) {
+    const auto emits = [&](const LitTriangle& triangle) {
+        return surface.scene->materials[triangle.material()].emits();
+    };
+    LitSurface lamps = surface;
+    std::erase_if(lamps.triangles, [&](const LitTriangle& triangle) { return !emits(triangle); });
+    const double lamp_area = area_of(lamps);
+    const double area = area_of(surface);
+    const std::size_t count = number_of_lamp_points(lamp_area, area, total);
+    const bool dense_enough = static_cast<double>(count) < 1.5 * lamp_area / area * static_cast<double>(total);
+    if (lamps.triangles.empty() || lamps.triangles.size() == surface.triangles.size() || dense_enough)
+        lamps.triangles.clear();
+    else
+        std::erase_if(surface.triangles, emits);
+    return lamps;
+}
+
 /// Points are written as floats: what they cannot hold is refused.
 void check_size(const LitSurface& surface, double area, std::size_t count) {
     constexpr double smallest = 1e-36;
@@ -65,6 +96,31 @@ void check_size(const LitSurface& surface, double area, std::size_t count) {
     if (share > smallest && share < largest && surface.extent < largest) return;
     throw UnsupportedInput(fmt::format("{}: a point's share of the surface is {:g} square units, expected {:g} to {:g}",
                                        surface.scene->source, share, smallest, largest));
+}
+
+PointCloud sample_part(const LitSurface& surface, const SurfaceShading& shading, std::size_t count,
+                       const SampleConfig& config, const ProgressCallback& progress,
+                       std::vector<std::string>& warnings) {
+    const double spacing = std::sqrt(area_of(surface) / static_cast<double>(count));
+    const std::vector<std::size_t> counts = counts_of_surfaces(surface, count);
+    Placement placement = config.pattern == SamplePattern::blue_noise
+                              ? place_blue_noise(surface, shading, counts, spacing, config.seed, progress)
+                              : place_stratified(surface, shading, counts, config.seed);
+    return finish_points(surface, shading, std::move(placement), spacing, config.normals, progress, warnings);
+}
+
+/// Appends points of the same scene.
+void append(PointCloud& cloud, const PointCloud& more) {
+    const auto join = [](auto& all, const auto& part) { all.insert(all.end(), part.begin(), part.end()); };
+    if (more.emits()) cloud.emission.resize(cloud.size(), Imath::C3f(0, 0, 0));
+    join(cloud.positions, more.positions);
+    join(cloud.normals, more.normals);
+    join(cloud.areas, more.areas);
+    join(cloud.albedo, more.albedo);
+    join(cloud.emission, more.emission);
+    join(cloud.faces, more.faces);
+    join(cloud.materials, more.materials);
+    if (cloud.emits()) cloud.emission.resize(cloud.size(), Imath::C3f(0, 0, 0));
 }
 
 [[noreturn]] void refuse_empty(const Scene& scene) {
@@ -94,13 +150,12 @@ PointCloud sample_surface(const Scene& scene, const SampleConfig& config, const 
     if (found.degenerate_faces > 0)
         found.warnings.push_back(std::to_string(found.degenerate_faces) + " triangles have no area and are left out");
 
-    const std::vector<std::size_t> counts = counts_of_surfaces(surface, count);
     report_progress(progress, "sample", 0.1);
-    Placement placement = config.pattern == SamplePattern::blue_noise
-                              ? place_blue_noise(surface, shading, counts, found.spacing, config.seed, progress)
-                              : place_stratified(surface, shading, counts, config.seed);
-    PointCloud cloud =
-        finish_points(surface, shading, std::move(placement), found.spacing, config.normals, progress, found.warnings);
+    const LitSurface lamps = take_lamps(surface, count);
+    const std::size_t lamp_count =
+        lamps.triangles.empty() ? 0 : number_of_lamp_points(area_of(lamps), found.area, count);
+    PointCloud cloud = sample_part(surface, shading, count - lamp_count, config, progress, found.warnings);
+    if (lamp_count > 0) append(cloud, sample_part(lamps, shading, lamp_count, config, {}, found.warnings));
     report_progress(progress, "sample", 1);
     if (report != nullptr) *report = std::move(found);
     return cloud;

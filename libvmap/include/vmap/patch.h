@@ -50,6 +50,7 @@ struct PatchSet {
 struct PatchConfig {
     std::size_t group_points = 32;    ///< a curved group has at most so many points
     float group_normal_range = 0.4F;  ///< and its normals differ by at most about this much, radians
+    float lamp_normal_range = 0.2F;   ///< the same of a group that emits: its shape shows in all the light it sends
 };
 
 /// Groups every point of the cloud into exactly one patch. Deterministic at any number of threads.

@@ -50,8 +50,8 @@ struct SampleReport {
 };
 
 /// Points on the surface, each with normal, albedo (averaged over its share of the texture), emission, area, face and
-/// material. Areas sum to the surface of each material and side. The same bytes for the same seed at any number of
-/// threads.
+/// material. Areas sum to the surface of each material and side. Lamps that would get too few points for their shape
+/// get up to a thousand of them, at most a twentieth of all. The same bytes for the same seed at any number of threads.
 ///
 /// - scene: indices in range, positions finite, as the importers deliver it
 /// - throws UnsupportedInput for a scene without surface, UsageError for 0 points, for a spacing that is not positive
