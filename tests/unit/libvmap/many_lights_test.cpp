@@ -109,14 +109,15 @@ TEST(ManyLights, SmallLampsOfACeilingAddUp) {
     for (int i = 0; i < 20; ++i)
         for (int k = 0; k < 20; ++k) {
             const V3f corner(static_cast<float>(i) * 0.2F - 1.9F, static_cast<float>(k) * 0.2F - 1.9F, 1.5F);
-            for (int p = 0; p < 25; ++p) {
-                cloud.positions.push_back(corner + V3f((static_cast<float>(p % 5) + 0.5F) * step,
-                                                       (static_cast<float>(p / 5) + 0.5F) * step, 0));
-                cloud.normals.emplace_back(0.0F, 0.0F, -1.0F);
-                cloud.areas.push_back(step * step);
-                cloud.albedo.emplace_back(0.0F);
-                cloud.emission.emplace_back(1.0F);
-            }
+            for (int x = 0; x < 5; ++x)
+                for (int y = 0; y < 5; ++y) {
+                    cloud.positions.push_back(
+                        corner + V3f((static_cast<float>(x) + 0.5F) * step, (static_cast<float>(y) + 0.5F) * step, 0));
+                    cloud.normals.emplace_back(0.0F, 0.0F, -1.0F);
+                    cloud.areas.push_back(step * step);
+                    cloud.albedo.emplace_back(0.0F);
+                    cloud.emission.emplace_back(1.0F);
+                }
             const V3d c(corner);
             lamps.push_back({c, c + V3d(0, 0.05, 0), c + V3d(0.05, 0.05, 0), c + V3d(0.05, 0, 0)});
         }
