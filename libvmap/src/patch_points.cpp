@@ -17,6 +17,7 @@ using Imath::V2f;
 constexpr float cell_spacings = 1.5F;            ///< edge of a cell, in point spacings
 constexpr double most_cells_per_point = 4;       ///< for patches with large holes
 constexpr std::uint32_t least_grid_points = 24;  ///< fewer are searched through
+constexpr float cell_rounding = 1e-3F;           ///< of coordinates that count cells
 
 /// The cell of a coordinate; places outside count to the cells at the border.
 std::uint32_t cell_of(float from_corner, float per_unit, std::uint32_t cells) {
@@ -81,6 +82,15 @@ std::uint32_t PatchPoints::nearest(std::uint32_t patch, const V2f& place) const 
     std::uint32_t best = 0;
     float least = std::numeric_limits<float>::infinity();
     // Squares of cells around the place, until nothing outside of the last one can be nearer.
+    const V2f in_cells = (place - grid.corner) * grid.per_unit;
+    const auto reach = [&](int ring) {  // in cells; only sides with cells beyond them count
+        constexpr float all = std::numeric_limits<float>::infinity();
+        const float left = column > ring ? in_cells.x - static_cast<float>(column - ring) : all;
+        const float right = column + ring + 1 < columns ? static_cast<float>(column + ring + 1) - in_cells.x : all;
+        const float below = row > ring ? in_cells.y - static_cast<float>(row - ring) : all;
+        const float above = row + ring + 1 < rows ? static_cast<float>(row + ring + 1) - in_cells.y : all;
+        return std::max(std::min({left, right, below, above}) - cell_rounding, 0.0F);
+    };
     for (int ring = 0; ring <= std::max(columns, rows); ++ring) {
         const auto visit = [&](int x, int y) {
             const int at = y * columns + x;
@@ -98,8 +108,8 @@ std::uint32_t PatchPoints::nearest(std::uint32_t patch, const V2f& place) const 
             for (int x = left; x <= right; ++x)
                 if (whole_row || x == column - ring || x == column + ring) visit(x, y);
         }
-        const float reached = static_cast<float>(ring) / grid.per_unit;
-        if (least <= reached * reached || grid.per_unit == 0) break;
+        const float reached = reach(ring);
+        if (std::sqrt(least) * grid.per_unit <= reached) break;
     }
     return best;
 }

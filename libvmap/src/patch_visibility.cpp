@@ -21,7 +21,7 @@ constexpr double plane_eps = 8e-6;
 constexpr double wall_lift = 4e-5;
 
 /// In point spacings: what closes the cracks between the groups of a curved surface, and what leaves it.
-constexpr double group_dilation = 0.35;
+constexpr double group_dilation = 0.15;
 constexpr double group_lift = 0.35;
 
 /// In eps: what stands less over a plane than facing_eps counts as lying in it. Whole nodes are called facing or
@@ -32,6 +32,14 @@ constexpr double facing_eps = 5;
 /// normals.
 constexpr double flat_normal_range = 3e-3;
 constexpr double cone_rounding = 3e-5;
+
+/// Neighbours of a group lie about as far out of its plane as its own points do.
+double lift_of_group(const PointCloud& cloud, const PatchSet& set, const Patch& patch) {
+    double thickness = 0;
+    for (const std::uint32_t i : set.points_of(patch))
+        thickness = std::max(thickness, std::abs(V3d(patch.normal).dot(V3d(cloud.positions[i]) - V3d(patch.center))));
+    return std::max(group_lift * static_cast<double>(patch.spacing()), thickness);
+}
 
 struct Range {
     double low = std::numeric_limits<double>::infinity();
@@ -56,7 +64,7 @@ PatchVisibility::PatchVisibility(const PointCloud& cloud, const Tree& tree, cons
         centers_.push_back(V3d(set.patches[p].center) - middle_);
         normals_.emplace_back(set.patches[p].normal);
         offsets_.push_back(normals_[p].dot(centers_[p]));
-        const double above = set.patches[p].flat ? 0 : group_lift * static_cast<double>(set.patches[p].spacing());
+        const double above = set.patches[p].flat ? 0 : lift_of_group(cloud, set, set.patches[p]);
         lift_.push_back(static_cast<float>(std::max({above, wall_lift * half_diagonal_, 5 * eps_})));
     }
     make_sites();
@@ -135,8 +143,9 @@ void PatchVisibility::make_sites() {
         const V3d normal(patch.normal);
         for (const std::uint32_t i : tree_.points_of(node)) {
             const V3d place = V3d(cloud_.positions[i]) - middle_;
-            // The points of a wall are taken to lie in it.
-            const double height = patch.flat ? normal.dot(place - centers_[node.patch]) : 0.0;
+            // The points of a wall are taken to lie in it; those of a group are not left below its plane.
+            double height = normal.dot(place - centers_[node.patch]);
+            if (!patch.flat) height = std::min(height, 0.0);
             sites_[i].lifted = V3f(place + normal * (static_cast<double>(lift_[node.patch]) - height));
             sites_[i].normal = patch.flat ? patch.normal : cloud_.normals[i];
             sites_[i].leaf = static_cast<std::uint32_t>(leaf);

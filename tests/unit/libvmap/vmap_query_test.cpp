@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cloud_scenes.h"
+#include "patch_points.h"
 
 #include <vmap/build_patch_vmap.h>
 #include <vmap/build_vmap.h>
@@ -279,6 +280,32 @@ TEST(PatchQuery, RaysMeetTheWallsOfARoomExactly) {
     }
     EXPECT_FALSE(q.query.first_point({0.5, 3, 0.5}, {0, 1, 0}));
     EXPECT_NEAR(q.query.first_point({0.3, 1e5, 0.7}, {0, -1, 0}).value_or(PointHit{}).distance, 1e5 - 1, 0.01);
+}
+
+TEST(PatchQuery, APlaceInAPatchHasTheNearestPointOfIt) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> beyond(-0.1F, 1.1F);
+    for (test::NamedCloud& scene : test::all_clouds(2000)) {
+        SCOPED_TRACE(scene.name);
+        const PointCloud cloud = QuestionedPatches::with_areas(std::move(scene.cloud));
+        const PatchSet set = find_patches(cloud);
+        const PatchPoints points(cloud, set);
+        for (std::uint32_t p = 0; p < set.patches.size();
+             p += 1 + static_cast<std::uint32_t>(set.patches.size() / 20)) {
+            const Patch& patch = set.patches[p];
+            Imath::Box2f box;
+            for (const std::uint32_t i : set.points_of(patch)) box.extendBy(patch.to_plane(cloud.positions[i]));
+            for (int k = 0; k < 20; ++k) {
+                const Imath::V2f share(beyond(random), beyond(random));
+                const Imath::V2f place = box.min + box.size() * share;
+                const auto distance = [&](std::uint32_t i) {
+                    return (patch.to_plane(cloud.positions[i]) - place).length();
+                };
+                const auto nearest = *std::ranges::min_element(set.points_of(patch), {}, distance);
+                ASSERT_FLOAT_EQ(distance(points.nearest(p, place)), distance(nearest));
+            }
+        }
+    }
 }
 
 TEST(PatchQuery, ALampLeavesItsUmbraUnderATable) {
