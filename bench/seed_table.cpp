@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <exception>
 #include <functional>
 #include <iterator>
 
@@ -173,6 +174,9 @@ void print_tables(const std::vector<std::string>& names) {
 }  // namespace
 }  // namespace vmap::bench
 
-int main(int argc, char** argv) {
+int main(int argc, char** argv) try {
     vmap::bench::print_tables({argv + 1, argv + argc});
+} catch (const std::exception& error) {
+    std::fputs(error.what(), stderr);
+    return 1;
 }

@@ -4,8 +4,8 @@
 /// is free of every patch, so that every point of one sees every point of the other; invisible when that is certain:
 /// nothing faces, or one patch cuts the whole shaft; else partial. Every builder decides pairs by this header alone.
 ///
-/// Segments leave a piece of surface a little above it: above a wall by what rounding takes, above a curved group by a
-/// third of its point spacing, so that its own neighbours do not hide it.
+/// Segments leave a piece of surface a little above it: above a wall by what rounding takes, above a curved group by
+/// its thickness or a third of its point spacing, so that neither it nor its neighbours hide its points.
 ///
 /// This work is based on:
 ///   R. Goradia, A. Kanakanti, S. Chandran, A. Datta, "Visibility map for global illumination in point clouds",
