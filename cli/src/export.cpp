@@ -6,6 +6,7 @@
 #include "distinct_files.h"
 #include "load_points.h"
 #include "outputs.h"
+#include "raw_points.h"
 
 #include <vmap/error.h>
 #include <vmap/exporters/camera_placement.h>
@@ -27,6 +28,7 @@ struct ExportOptions {
     std::string output;
     UpAxis up = UpAxis::y;
     std::string size = "512";
+    RawPointOptions raw;
     std::string camera;
     PovPreset preset = PovPreset::normal;
     std::optional<int> bounces;
@@ -65,13 +67,15 @@ void run_export(const ExportOptions& options, Job& job) {
                          ": expected a name that ends in .pov (vmap light and vmap sample write .ply, "
                          ".glb, .gltf, .vdb, .exr and .png)");
     require_distinct_files({options.file}, {options.output});
-    const Input input = read_input(options.file, input_config(options.scene, options.light_units));
+    Input input = read_input(options.file, input_config(options.scene, options.light_units));
     job.warn(input.scene.warnings);
     if (!input.scene.instances.empty())
         export_scene(options, input, job);
-    else if (input.points)
-        export_points(options, *input.points, input.scene, job);
-    else
+    else if (input.points) {
+        const Scene scene = std::move(input.scene);
+        export_points(options, complete_points(std::move(input), options.file, options.raw, scene.lights, job), scene,
+                      job);
+    } else
         throw UnsupportedInput(options.file + ": nothing to export; expected meshes or points");
 }
 
@@ -101,6 +105,7 @@ Command add_export_command(CLI::App& program) {
         ->type_name("SIZE")
         ->default_str("512");
     app->add_option("--camera", options->camera, "Camera of the scene, by name or index")->type_name("NAME");
+    add_raw_point_options(*app, options->raw);
     return {app, [options](Job& job) { run_export(*options, job); }};
 }
 

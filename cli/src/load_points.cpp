@@ -5,6 +5,7 @@
 #include "parse_values.h"
 #include "stopwatch.h"
 
+#include <vmap/axes.h>
 #include <vmap/error.h>
 
 #include <map>
@@ -12,20 +13,12 @@
 namespace vmap {
 namespace {
 
-/// Points of our own files go on as they are.
-void take_points(PointFile points, const std::string& file, LoadedPoints& loaded) {
-    const PointCloud& cloud = points.cloud.points;
-    if (cloud.normals.empty() || cloud.areas.empty() || cloud.albedo.empty())
-        throw UnsupportedInput(file + ": points without " +
-                               (cloud.normals.empty() ? "normals"
-                                : cloud.areas.empty() ? "areas"
-                                                      : "albedo") +
-                               "; expected a mesh or a file that vmap wrote");
-    if (points.ours) {
-        loaded.info.light_units = points.light_units;
-        loaded.info.source = points.source;
-    }
-    loaded.cloud = std::move(points.cloud);
+/// A light of the command line, which is given in the axes of the file.
+LightSource world_light(const std::string& text, UpAxis up) {
+    LightSource light = parse_light(text);
+    light.position = world_from_file(up, light.position);
+    light.direction = world_from_file(up, light.direction);
+    return light;
 }
 
 }  // namespace
@@ -77,6 +70,7 @@ void add_load_options(CLI::App& app, LoadOptions& options) {
     app.add_option("--light", options.lights,
                    "Adds a light: point:X,Y,Z:W_PER_SR or sun:DX,DY,DZ:W_PER_M2, in the axes of the file; may repeat")
         ->type_name("LIGHT");
+    add_raw_point_options(app, options.raw);
 }
 
 double total_area(const PointCloud& cloud) {
@@ -87,7 +81,7 @@ double total_area(const PointCloud& cloud) {
 
 LoadedPoints load_points(const LoadOptions& options, Job& job) {
     LoadedPoints loaded;
-    for (const std::string& light : options.lights) loaded.lights.push_back(parse_light(light));
+    for (const std::string& light : options.lights) static_cast<void>(parse_light(light));  // before the long work
 
     Stopwatch importing;
     const ProgressCallback progress = job.progress();
@@ -95,13 +89,23 @@ LoadedPoints load_points(const LoadOptions& options, Job& job) {
     Input input = read_input(options.file, input_config(options.scene, options.light_units));
     loaded.scene = std::move(input.scene);
     job.warn(loaded.scene.warnings);
+    for (const std::string& light : options.lights) loaded.lights.push_back(world_light(light, input.facts.up));
     loaded.lights.insert(loaded.lights.end(), loaded.scene.lights.begin(), loaded.scene.lights.end());
     loaded.info.light_units = options.light_units;
     loaded.info.source = loaded.scene.source;
     loaded.import_seconds = importing.seconds();
 
     if (loaded.scene.instances.empty() && input.points) {
-        take_points(std::move(*input.points), options.file, loaded);
+        if (options.sample.points || options.sample.spacing)
+            job.warn("the file holds points, which are taken as they are: --points and --spacing do nothing");
+        Stopwatch preparing;
+        PointFile points = complete_points(std::move(input), options.file, options.raw, loaded.lights, job);
+        if (points.ours) {
+            loaded.info.light_units = points.light_units;
+            loaded.info.source = points.source;
+        }
+        loaded.cloud = std::move(points.cloud);
+        loaded.sample_seconds = preparing.seconds();
         return loaded;
     }
     Stopwatch sampling;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "job.h"
+#include "raw_points.h"
 
 #include <vmap/exporters/output_info.h>
 #include <vmap/importers/input.h>
@@ -21,6 +22,7 @@ struct LoadOptions {
     LightUnits light_units = LightUnits::compat;
     SampleConfig sample;
     std::vector<std::string> lights;  ///< --light, not yet parsed
+    RawPointOptions raw;
 };
 
 /// --scene and --light-units.

@@ -9,6 +9,7 @@
 #include "map_picture.h"
 #include "outputs.h"
 #include "parse_values.h"
+#include "raw_points.h"
 
 #include <vmap/error.h>
 #include <vmap/exporters/camera_placement.h>
@@ -34,6 +35,7 @@ struct RenderOptions {
     std::string scene;
     std::vector<std::string> outputs;
     std::string size = "512";
+    RawPointOptions raw;
     std::optional<double> exposure;
     Show show = Show::radiance;
     std::string from;
@@ -73,8 +75,9 @@ Subject read_lit_points(const RenderOptions& options, Job& job) {
     if (!input.points || (needs_light && input.points->cloud.irradiance.empty()))
         throw UnsupportedInput(printable(options.points) +
                                ": holds no lit points; expected a file that vmap light wrote");
-    PointFile& points = *input.points;
-    return {std::move(points.cloud), std::move(input.scene), points.light_units, std::move(points.source), {}};
+    Scene scene = std::move(input.scene);
+    PointFile points = complete_points(std::move(input), options.points, options.raw, scene.lights, job);
+    return {std::move(points.cloud), std::move(scene), points.light_units, std::move(points.source), {}};
 }
 
 Subject read_map(const RenderOptions& options) {
