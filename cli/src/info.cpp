@@ -2,14 +2,12 @@
 /// \file
 /// vmap info: what is in a file and what the toolkit makes of it.
 #include "commands.h"
+#include "load_points.h"
 #include "map_facts.h"
+#include "scene_facts.h"
 
 #include <vmap/importers/input.h>
-#include <vmap/light_source.h>
-#include <vmap/printable.h>
-#include <vmap/surface_shading.h>
 
-#include <Imath/ImathBox.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
@@ -26,77 +24,30 @@ struct InfoOptions {
     bool json = false;
 };
 
-struct Summary {
-    std::size_t triangles = 0;
-    std::size_t points = 0;
-    double area = 0;           ///< of the surface's fronts, world units squared
-    double emissive_area = 0;  ///< of the part of it whose material emits
-    Imath::Box3d box;          ///< of triangles and points
-};
-
-Summary summarize(const Input& input) {
-    Summary summary;
-    const Scene& scene = input.scene;
-    for (std::size_t i = 0; i < scene.instances.size(); ++i) {
-        const Mesh& mesh = scene.meshes[scene.instances[i].mesh];
-        const bool emits = scene.materials[mesh.material].emits();
-        summary.triangles += mesh.triangle_count();
-        for (std::size_t t = 0; t < mesh.triangle_count(); ++t) {
-            const double area = world_area_normal(scene, i, t).length() / 2;
-            summary.area += area;
-            if (emits) summary.emissive_area += area;
-            for (const Imath::V3d& v : world_triangle(scene, i, t)) summary.box.extendBy(v);
-        }
-    }
-    if (input.points) {
-        const PointCloud& points = input.points->cloud.points;
-        summary.points = points.size();
-        for (const Imath::V3f& p : points.positions) summary.box.extendBy(points.origin + Imath::V3d(p));
-    }
-    return summary;
+std::string text_of(const Json& value) {
+    return value.is_string() ? value.get<std::string>() : value.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-Json to_json(const InfoOptions& options, const Input& input, const Summary& summary) {
-    const Scene& scene = input.scene;
-    Json json{{"input", printable(options.file)},
-              {"triangles", summary.triangles},
-              {"points", summary.points},
-              {"meshes", scene.meshes.size()},
-              {"instances", scene.instances.size()},
-              {"materials", scene.materials.size()},
-              {"images", scene.images.size()},
-              {"area", summary.area},
-              {"emissive_area", summary.emissive_area},
-              {"lights", scene.lights.size()},
-              {"cameras", scene.cameras.size()}};
-    if (!summary.box.isEmpty())
-        json["box"] = {{summary.box.min.x, summary.box.min.y, summary.box.min.z},
-                       {summary.box.max.x, summary.box.max.y, summary.box.max.z}};
-    json["extensions"] = scene.extensions;
-    json["warnings"] = Json::array();
-    for (const std::string& warning : scene.warnings) json["warnings"].push_back(printable(warning));
-    return json;
-}
-
+/// One line a fact; a list of texts or objects has one line an entry.
 void print_text(const Json& json) {
     for (const auto& [key, value] : json.items()) {
-        const std::string text =
-            value.is_string() ? value.get<std::string>() : value.dump(-1, ' ', false, Json::error_handler_t::replace);
-        fmt::print("{:<27} {}\n", key, text);
+        const bool is_list = value.is_array() && !value.empty() && (value[0].is_string() || value[0].is_object());
+        if (!is_list) {
+            fmt::print("{:<27} {}\n", key, text_of(value));
+            continue;
+        }
+        for (std::size_t i = 0; i < value.size(); ++i) fmt::print("{:<27} {}\n", i == 0 ? key : "", text_of(value[i]));
     }
 }
 
-Json scene_facts(const InfoOptions& options, Job& job) {
-    const Input input =
-        read_input(options.file, {.scene = options.scene.empty() ? std::optional<std::string>() : options.scene,
-                                  .light_units = LightUnits::compat,
-                                  .up = std::nullopt});
+Json facts_of_input(const InfoOptions& options, Job& job) {
+    const Input input = read_input(options.file, input_config(options.scene, LightUnits::compat));
     job.warn(input.scene.warnings);
-    return to_json(options, input, summarize(input));
+    return scene_facts(options.file, input);
 }
 
 void run_info(const InfoOptions& options, Job& job) {
-    const Json json = is_vmap_file(options.file) ? map_facts(options.file) : scene_facts(options, job);
+    const Json json = is_vmap_file(options.file) ? map_facts(options.file) : facts_of_input(options, job);
     if (options.json)
         fmt::print("{}\n", json.dump(1, ' ', false, Json::error_handler_t::replace));
     else

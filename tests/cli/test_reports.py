@@ -91,3 +91,45 @@ def test_main_help_lists_commands_and_exit_codes(folder):
 def test_version(folder):
     assert re.fullmatch(rb"vmap \d+\.\d+\.\d+\n", succeed("--version").stdout)
     assert vmap("--version").stderr == b""
+
+
+def test_info_tells_what_is_in_a_scene_and_what_light_would_do(folder):
+    facts = json.loads(succeed("info", scene("spot_light_hard"), "--json").stdout)
+    assert (facts["format"], facts["up"]) == ("glTF, text", "y")
+    assert facts["lights"] == len(facts["light_list"]) == 1
+    light = facts["light_list"][0]
+    assert light["kind"] == "spot" and len(light["position"]) == len(light["direction"]) == 3
+    assert 0 < light["cone_degrees"][0] <= light["cone_degrees"][1] <= 90
+    assert facts["extensions"] == ["KHR_lights_punctual"]
+    assert facts["area"] > 0 and facts["triangles"] > 0 and facts["vertices"] > 0
+    assert all(low <= high for low, high in zip(*facts["box"]))
+    assert any("sample 200000 points" in step for step in facts["light_would"])
+    assert any("1 light" in step for step in facts["light_would"])
+
+
+def test_info_tells_what_is_missing(folder):
+    (folder / "scan.xyz").write_text("0 0 0\n1 0 0\n0 1 0\n1 1 0\n")
+    facts = json.loads(succeed("info", "scan.xyz", "--json").stdout)
+    assert facts["points"] == 4 and facts["point_attributes"] == [] and facts["up"] == "z"
+    assert "normals" in facts["light_would"][0] and "refuse: nothing emits light" in facts["light_would"][-1]
+
+
+def test_info_of_lit_points(folder):
+    succeed("light", scene("cornell_box"), "--points", 500, "-o", "lit.ply", "--quiet")
+    facts = json.loads(succeed("info", "lit.ply", "--json").stdout)
+    assert {"normal", "area", "albedo", "emission", "irradiance"} <= set(facts["point_attributes"])
+    assert facts["emissive_area"] > 0 and facts["area"] > 100
+    assert facts["light_would"][0] == "take the points as they are"
+
+
+def test_info_for_people_has_a_line_for_each_fact(folder):
+    lines = succeed("info", scene("cornell_box")).stdout.decode().splitlines()
+    assert any(line.startswith("format ") and line.endswith("glTF, text") for line in lines)
+    assert any(line.startswith("light_would ") for line in lines)
+
+
+def test_info_warns_once_for_each_feature(folder):
+    (folder / "two.mtl").write_text("newmtl a\nKs 1 1 1\nnewmtl b\nKs 1 1 1\n")
+    (folder / "two.obj").write_text("mtllib two.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 3 2 1\n")
+    facts = json.loads(succeed("info", "two.obj", "--json", "--quiet").stdout)
+    assert sum("specular" in warning for warning in facts["warnings"]) == 1
