@@ -171,8 +171,7 @@ std::optional<PointFile> PointCollector::finish() {
     points.emission = take(emission_);
     file.cloud.irradiance = take(irradiance_);
     if (!document_.own) return file;
-    file.ours =
-        !points.normals.empty() && !points.areas.empty() && !points.albedo.empty() && !file.cloud.irradiance.empty();
+    file.ours = !points.normals.empty() && !points.areas.empty() && !points.albedo.empty();
     file.light_units = document_.own->light_units;
     file.exposure = document_.own->exposure;
     file.source = document_.own->source;

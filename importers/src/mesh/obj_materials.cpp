@@ -55,11 +55,9 @@ Material default_material(bool has_colors) {
 void ObjMaterials::load(std::string_view names, Warnings& warnings) {
     // The whole line may be one name; only if it is not, it is a list.
     const std::vector<std::string> list = split_names(names);
-    Warnings unheard;
-    if (list.size() > 1 && load_library(std::string(names), unheard)) return;
+    if (list.size() > 1 && load_library(std::string(names), warnings)) return;
     bool found = false;
-    Warnings missing;
-    for (const std::string& name : list) found = load_library(name, missing) || found;
+    for (const std::string& name : list) found = load_library(name, warnings) || found;
     // A list with one library that is there is taken as a choice.
     if (!found)
         for (const std::string& name : list)

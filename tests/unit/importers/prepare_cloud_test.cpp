@@ -314,6 +314,7 @@ TEST(PrepareCloud, RefusesWhatIsNoSurface) {
         return cloud;
     };
     std::vector<V3f> line;
+    line.reserve(1000);
     for (int i = 0; i < 1000; ++i) line.emplace_back(V3d(1, 2, 3) * (0.001 * i * i));
     for (LitCloud cloud : {cloud_of({{1, 2, 3}}), cloud_of({{1, 2, 3}, {1, 2, 4}}),
                            cloud_of(std::vector<V3f>(500, V3f(1, 2, 3))), cloud_of(line)})
