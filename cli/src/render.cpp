@@ -207,6 +207,7 @@ Command add_render_command(CLI::App& program) {
         ->default_str("radiance");
     app->add_option("--from", options->from, "The place whose next point looks, with --show visibility")
         ->type_name("X,Y,Z");
+    add_raw_point_options(*app, options->raw);
     return {app, [options](Job& job) { run_render(*options, job); }};
 }
 
