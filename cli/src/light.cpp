@@ -5,6 +5,7 @@
 #include "distinct_files.h"
 #include "load_points.h"
 #include "outputs.h"
+#include "parse_values.h"
 #include "report.h"
 #include "stopwatch.h"
 
@@ -24,6 +25,7 @@ struct LightOptions {
     LoadOptions load;
     OutputOptions output;
     LightConfig light;
+    std::string sky;
     std::string report;
 };
 
@@ -50,6 +52,7 @@ void run_light(LightOptions options, Job& job) {
 
     LoadedPoints loaded = load_points(options.load, job);
     options.light.seed = job.options().seed;
+    if (!options.sky.empty()) options.light.sky = parse_color("--sky", options.sky);
     LightResult light;
     try {
         light = compute_light(loaded.cloud.points, loaded.lights, options.light, job.progress());
@@ -97,6 +100,8 @@ Command add_light_command(CLI::App& program) {
     app->add_option("--tolerance", options->light.tolerance, "Error asked for: mean |dE| over mean E")
         ->type_name("T")
         ->capture_default_str();
+    app->add_option("--sky", options->sky, "Radiance of the sky around, W/(m^2 sr): one number or R,G,B")
+        ->type_name("L");
     app->add_option("--json", options->report, "Writes a report there; - is standard output")->type_name("FILE");
     return {app, [options](Job& job) { run_light(*options, job); }};
 }

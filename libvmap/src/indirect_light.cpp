@@ -111,6 +111,7 @@ private:
                 sent[i] += surface_.cloud.emission[i] * std::numbers::pi_v<float>;
         });
         first_radiosity_ = texels_.means_of(sent);
+        first_radiosity_.push_back(config_.sky * std::numbers::pi_v<float>);
     }
 
     void place_texels(bool careful) {
@@ -155,6 +156,7 @@ private:
         for (std::size_t k = 0; k < hits.size(); ++k) {
             Ray ray{origin, frame.world_from_local(directions[k])};
             RayHit hit = hits[k];
+            const bool open = !hit;
             if (hit && !hit.front && !surface_.set.patches[hit.polygon].flat) {
                 // The back of a group: a neighbour that pokes through the curve. Start clear of it.
                 ray.origin = receiver.position + receiver.normal * (2 * surface_.set.patches[hit.polygon].spacing());
@@ -164,13 +166,19 @@ private:
                 if (hit) ray.t_max = hit.t;
                 hit = surface_.hit_in_crack(ray);
             }
-            if (!hit) continue;
+            if (!hit) {
+                if (open) hits_[r * hits.size() + k] = sky_texel();
+                continue;
+            }
             const Patch& met = surface_.set.patches[hit.polygon];
             const TexelRaster& raster = texels_.raster(hit.polygon);
             hits_[r * hits.size() + k] =
                 met.flat ? raster.at(met.to_plane(ray.origin + ray.direction * hit.t)) : raster.first;
         }
     }
+
+    /// The sky stands behind the texels of the patches. It reflects nothing.
+    [[nodiscard]] std::uint32_t sky_texel() const { return static_cast<std::uint32_t>(texels_.size()); }
 
     [[nodiscard]] std::span<const std::uint32_t> hits_of(std::size_t r) const {
         return std::span(hits_).subspan(r * fineness_.rays, fineness_.rays);
@@ -191,7 +199,7 @@ private:
     /// What the texels reflect of the indirect light alone.
     [[nodiscard]] std::vector<C3f> reflected(const std::vector<float>& x) const {
         const std::vector<Quadratic> field = fit_->fit(x);
-        std::vector<C3f> radiosity(texels_.size());
+        std::vector<C3f> radiosity(texels_.size() + 1, C3f(0, 0, 0));
         tbb::parallel_for(std::size_t{0}, texels_.size(), [&](std::size_t t) {
             radiosity[t] = product(albedo_[t], fit_->value_at(places_[t], field));
         });

@@ -24,6 +24,7 @@ struct IndirectConfig {
     double tolerance = 0.01;
     std::uint64_t seed = 1;
     bool gather_emission = false;  ///< emission is seen by the rays: the direct light leaves it out
+    Imath::C3f sky{0, 0, 0};       ///< radiance from where no surface is
 };
 
 struct IndirectResult {

@@ -41,6 +41,14 @@ std::array<HalfSpace, 6> half_spaces_around(const Imath::Box3f& box, float margi
     return around;
 }
 
+/// False only if a polygon lies wholly outside of one of the half-spaces.
+bool may_reach(std::span<const V3f> polygon, std::span<const HalfSpace> spaces) {
+    return std::none_of(spaces.begin(), spaces.end(), [&](const HalfSpace& half) {
+        return std::all_of(polygon.begin(), polygon.end(),
+                           [&](const V3f& v) { return half.normal.dot(v) > half.offset; });
+    });
+}
+
 /// Whether a place in the plane of a piece lies in its outline or at most `margin` outside of it.
 bool reaches(const Piece& piece, const Imath::V2f& place, double margin) {
     const V2d q(place);
@@ -248,7 +256,17 @@ void snap_edges(std::vector<Piece>& pieces) {
                 const double sign = line_normal.dot(edges[e].inward) > 0 ? 1 : -1;
                 edges[e] = {line_normal * sign, offset * sign};
             }
-            if (near.size() > 1 && best >= 1.2 * own) loose[p] = 1;
+            if (best < 1.2 * own) continue;
+            // Nothing to join with; loose all the same if something lies along the edge, not only around its ends.
+            Imath::Box3f inner;
+            inner.extendBy(V3f(ends[0] * 0.7 + ends[1] * 0.3));
+            inner.extendBy(V3f(ends[0] * 0.3 + ends[1] * 0.7));
+            const std::array<HalfSpace, 6> along = half_spaces_around(inner, 1.5F * piece.patch.spacing());
+            near.clear();
+            bvh.polygons_in(along, near);
+            if (std::any_of(near.begin(), near.end(),
+                            [&](std::uint32_t other) { return other != p && may_reach(outlines[other], along); }))
+                loose[p] = 1;
         }
         std::vector<V2d> outline = outline_of(edges);
         const bool sound =

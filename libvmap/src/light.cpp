@@ -31,7 +31,11 @@ void check(const PointCloud& cloud, std::span<const LightSource> lights, const L
     const bool glows = std::any_of(cloud.emission.begin(), cloud.emission.end(), positive);
     const bool lit =
         std::any_of(lights.begin(), lights.end(), [&](const LightSource& light) { return positive(light.intensity); });
-    if (!glows && !lit) throw UnsupportedInput("nothing emits light: expected a light source or an emissive surface");
+    for (int c = 0; c < 3; ++c)
+        if (!(config.sky[c] >= 0 && std::isfinite(config.sky[c])))
+            throw UsageError("sky radiance " + std::to_string(config.sky[c]) + ": expected finite values of 0 or more");
+    if (!glows && !lit && !positive(config.sky))
+        throw UnsupportedInput("nothing emits light: expected a light source, an emissive surface or a sky");
 }
 
 /// Whether the rays of the indirect light shall see the emitters: they do it well where the emitters fill a good part
@@ -77,8 +81,8 @@ LightResult compute_light(const PointCloud& cloud, std::span<const LightSource> 
     result.report.direct_seconds = seconds_since(start);
 
     start = std::chrono::steady_clock::now();
-    const IndirectResult indirect =
-        indirect_light(surface, result.irradiance, {config.tolerance, config.seed, gather_emission}, progress);
+    const IndirectResult indirect = indirect_light(
+        surface, result.irradiance, {config.tolerance, config.seed, gather_emission, config.sky}, progress);
     double sum = 0;
     for (std::size_t i = 0; i < cloud.size(); ++i) {
         result.irradiance[i] += indirect.irradiance[i];

@@ -18,6 +18,7 @@ namespace vmap {
 struct LightConfig {
     double tolerance = 0.01;  ///< mean |dE| / mean E asked for, in (0, 1]
     std::uint64_t seed = 1;   ///< of the quasi-random rays
+    Imath::C3f sky{0, 0, 0};  ///< radiance from where no surface is, W/(m^2 sr), linear Rec.709
 };
 
 /// What the computation made, spent and left open.
@@ -41,8 +42,8 @@ struct LightResult {
     LightReport report;
 };
 
-/// Irradiance at every point: direct light of the sources and of the points that emit, and its reflections between the
-/// points, any number of times. The result is the same bit for bit at any number of threads.
+/// Irradiance at every point: direct light of the sources, of the points that emit and of the sky, and its reflections
+/// between the points, any number of times. The result is the same bit for bit at any number of threads.
 ///
 /// - cloud: finite, normals of unit length, areas positive
 /// - throws UsageError for a tolerance outside (0, 1], UnsupportedInput when nothing emits light or when a closed scene

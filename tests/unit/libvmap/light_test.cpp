@@ -117,6 +117,28 @@ TEST(ComputeLight, SunCastsASharpShadow) {
     }
 }
 
+TEST(ComputeLight, OpenGroundUnderASkyGetsPiTimesItsRadiance) {
+    PointCloud ground;
+    add_wall(ground, V3f(0), V3f(1, 0, 0), V3f(0, 1, 0), 40, 0.5F, 0);
+    const LightResult result = compute_light(ground, {}, {.sky = C3f(1, 2, 0.5F)});
+    for (const C3f& e : result.irradiance)
+        for (int c = 0; c < 3; ++c) EXPECT_NEAR(e[c], std::numbers::pi_v<float> * C3f(1, 2, 0.5F)[c], 1e-4F);
+}
+
+// The sky fills the opening of a black box: E / pi on its floor is the form factor to the lid, 0.199825 for a cube.
+TEST(ComputeLight, FloorOfAnOpenBoxSeesTheSkyThroughItsOpening) {
+    PointCloud box = closed_box(60, 0, 0);
+    const auto lid = static_cast<std::ptrdiff_t>(60 * 60);  // the second wall, at z = 1
+    const auto open = [&](auto& values) { values.erase(values.begin() + lid, values.begin() + 2 * lid); };
+    open(box.positions);
+    open(box.normals);
+    open(box.areas);
+    open(box.albedo);
+    open(box.emission);
+    const LightResult result = compute_light(box, {}, {.sky = C3f(1)});
+    EXPECT_NEAR(mean(result.irradiance, 0, 3600) / std::numbers::pi, 0.199825, 0.001);
+}
+
 TEST(ComputeLight, SameBytesAtAnyNumberOfThreads) {
     const PointCloud cloud = closed_box(30, 0.6F, 0.2F);
     const auto lit_by = [&](std::size_t threads) {
