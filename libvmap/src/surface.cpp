@@ -58,11 +58,18 @@ Surface::Surface(const PointCloud& points) : cloud(points), set(find_patches(poi
     });
     for (const std::vector<Tile>& part : cut) tiles.insert(tiles.end(), part.begin(), part.end());
 
-    std::vector<float> dilation;
-    dilation.reserve(set.patches.size());
-    for (const Patch& patch : set.patches) dilation.push_back(patch.flat ? 1e-6F * diagonal : 0.15F * patch.spacing());
-    bvh = PolygonBvh(set.outlines, {dilation});
-    pencils = PencilTracer(set.outlines, dilation);
+    // Shadow rays must not slip between the groups of a closed surface. Rays that gather light are tried again there,
+    // and with less growth the larger groups take less of the view from the smaller ones.
+    const auto grown = [&](float spacings) {
+        std::vector<float> growth;
+        growth.reserve(set.patches.size());
+        for (const Patch& patch : set.patches)
+            growth.push_back(patch.flat ? 1e-6F * diagonal : spacings * patch.spacing());
+        return growth;
+    };
+    const std::vector<float> closed = grown(0.35F);
+    bvh = PolygonBvh(set.outlines, {closed});
+    pencils = PencilTracer(set.outlines, grown(0.15F));
 
     PolygonSet outlines;
     std::vector<float> growth;
