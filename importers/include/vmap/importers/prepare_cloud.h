@@ -50,10 +50,10 @@ struct PrepareReport {
 [[nodiscard]] bool is_complete(const PointCloud& cloud);
 
 /// Fills in what a cloud lacks. Normals are those of planes through the nearest points, one side of a crease at a time.
-/// Areas are those of Voronoi cells in the tangent planes; at open borders a cell ends a quarter of the spacing from its point. A
-/// missing albedo is 0.8. Points in the place of another one and outliers (more than three times as far from their
-/// neighbours as those are from theirs) are dropped, also from the irradiance. What the cloud has stays as it is. The
-/// result is the same bit for bit at any number of threads.
+/// Areas are those of Voronoi cells in the tangent planes; at open borders a cell ends a quarter of the spacing from
+/// its point. A missing albedo is 0.8. Points in the place of another one and outliers (more than three times as far
+/// from their neighbours as those are from theirs) are dropped, also from the irradiance. What the cloud has stays as
+/// it is. The result is the same bit for bit at any number of threads.
 ///
 /// - cloud: finite, normals of unit length, world frame
 /// - throws UnsupportedInput for points that are no surface: fewer than three places, or all on one line
