@@ -20,12 +20,13 @@ constexpr float blend_turn = 0.1F;
 
 }  // namespace
 
-CurvedLight::CurvedLight(const Surface& surface, std::vector<VectorIrradiance> fields)
+CurvedLight::CurvedLight(const Surface& surface, std::vector<VectorIrradiance> fields, const std::vector<bool>& known)
     : surface_(&surface), fields_(std::move(fields)) {
     for (const Patch& patch : surface.set.patches)
         if (!patch.flat) reach_ = std::max(reach_, blend_reach * std::sqrt(patch.area));
     for (std::uint32_t p = 0; p < surface.set.patches.size(); ++p)
-        if (!surface.set.patches[p].flat) cells_[key(surface.set.patches[p].center, {0, 0, 0})].push_back(p);
+        if (!surface.set.patches[p].flat && known[p])
+            cells_[key(surface.set.patches[p].center, {0, 0, 0})].push_back(p);
 }
 
 C3f CurvedLight::at(std::uint32_t group, const V3f& position, const V3f& normal) const {

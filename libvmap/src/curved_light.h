@@ -24,7 +24,8 @@ using VectorIrradiance = std::array<Imath::V3f, 3>;
 class CurvedLight {
 public:
     /// - fields: one per patch; those of flat patches are not looked at
-    CurvedLight(const Surface& surface, std::vector<VectorIrradiance> fields);
+    /// - known: one per patch: whether its field counts; a group of which nothing is known takes its neighbours' light
+    CurvedLight(const Surface& surface, std::vector<VectorIrradiance> fields, const std::vector<bool>& known);
 
     /// Irradiance at a place of a curved group.
     [[nodiscard]] Imath::C3f at(std::uint32_t group, const Imath::V3f& position, const Imath::V3f& normal) const;

@@ -25,6 +25,9 @@ using Imath::V2f;
 using Imath::V3f;
 
 constexpr std::uint32_t no_texel = 0xFFFFFFFFU;
+/// A receiver is buried if most of its rays meet the back of something nearer than that many spacings and its patch has
+/// no points there: it lies where the outline reaches under the next one.
+constexpr float buried_below = 3;
 
 C3f product(const C3f& a, const C3f& b) {
     return {a.x * b.x, a.y * b.y, a.z * b.z};
@@ -146,13 +149,14 @@ private:
     }
 
     void trace_receiver(std::size_t r) {
-        const Receiver& receiver = receivers_[r];
+        Receiver& receiver = receivers_[r];
         const NormalFrame frame = frame_of(r);
         const V3f origin =
             receiver.position + receiver.normal * surface_.gather_offset(surface_.set.patches[receiver.patch]);
         const DirectionSet directions = directions_.set(receiver.direction_set);
         std::vector<RayHit> hits(directions.size());
         surface_.pencils.first_hits(origin, frame, directions, hits);
+        std::size_t backs = 0;
         for (std::size_t k = 0; k < hits.size(); ++k) {
             Ray ray{origin, frame.world_from_local(directions[k])};
             RayHit hit = hits[k];
@@ -168,6 +172,7 @@ private:
             }
             if (!hit) {
                 if (open) hits_[r * hits.size() + k] = sky_texel();
+                if (!open && folds_over(receiver, hits[k])) ++backs;
                 continue;
             }
             const Patch& met = surface_.set.patches[hit.polygon];
@@ -175,6 +180,13 @@ private:
             hits_[r * hits.size() + k] =
                 met.flat ? raster.at(met.to_plane(ray.origin + ray.direction * hit.t)) : raster.first;
         }
+        receiver.buried = 2 * backs > hits.size();
+    }
+
+    /// Whether a patch that a ray met from behind goes on where the receiver's own one ends, at a fold.
+    [[nodiscard]] bool folds_over(const Receiver& receiver, const RayHit& hit) const {
+        const float turn = surface_.set.patches[hit.polygon].normal.dot(receiver.normal);
+        return hit.t < buried_below * surface_.set.patches[receiver.patch].spacing() && turn > 0.3F && turn < 0.9999F;
     }
 
     /// The sky stands behind the texels of the patches. It reflects nothing.
@@ -252,7 +264,10 @@ private:
     [[nodiscard]] std::vector<C3f> at_points(const std::vector<float>& x) const {
         std::vector<C3f> irradiance(surface_.cloud.size());
         const std::vector<Quadratic> field = fit_->fit(x);
-        const CurvedLight curved(surface_, vector_irradiance(x));
+        std::vector<bool> known(surface_.set.patches.size());
+        for (std::size_t p = 0; p < known.size(); ++p)
+            known[p] = !surface_.set.patches[p].flat && !receivers_[center_of_[p]].buried;
+        const CurvedLight curved(surface_, vector_irradiance(x), known);
         tbb::parallel_for(std::size_t{0}, surface_.tiles.size(), [&](std::size_t t) {
             const Tile& tile = surface_.tiles[t];
             const Patch& patch = surface_.set.patches[tile.patch];

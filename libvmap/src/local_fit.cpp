@@ -106,6 +106,7 @@ LocalFit::Neighborhood LocalFit::neighborhood(const ReceiverGrid& grid, const Re
             const ReceiverGrid::Vertex* other = grid.vertex_at({at.x + dx * size, at.y + dy * size});
             if (other == nullptr) continue;
             const Receiver& neighbor = receivers_[other->receiver];
+            if (neighbor.buried) continue;
             const double reach = window + 0.9;
             const double near = 1 - (dx * dx + dy * dy) / (1.3 * reach * reach);
             found.contact = found.contact || other->contact;
@@ -153,7 +154,17 @@ void LocalFit::add_stencil(const ReceiverGrid& grid, const ReceiverGrid::Vertex&
         if (invert(inverse, terms)) break;
     }
 
+    const Receiver& own = receivers_[vertex.receiver];
     made.receivers.push_back(vertex.receiver);
+    if (terms == 1 && own.buried && count > 0) {
+        // Too few neighbours for a slope: their mean.
+        made.counts.push_back(static_cast<std::uint32_t>(count));
+        for (const std::uint32_t neighbor : near.receivers) {
+            made.neighbors.push_back(neighbor);
+            made.weights.push_back({1 / static_cast<float>(count), 0, 0, 0, 0, 0});
+        }
+        return;
+    }
     if (terms == 1) {
         made.counts.push_back(1);
         made.neighbors.push_back(vertex.receiver);

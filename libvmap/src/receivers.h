@@ -22,6 +22,7 @@ struct Receiver {
     Imath::V2f place{0, 0};  ///< in the patch's plane; flat patches only
     std::uint32_t patch = 0;
     std::uint32_t direction_set = 0;  ///< neighbours have different ones
+    bool buried = false;              ///< it lies under its neighbours, and what it sees does not count
 };
 
 /// The receivers of one flat patch: a grid of cells, some of them cut in four, some of those again.
