@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "error_colors.h"
+#include <vmap/compare/error_colors.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "error_colors.h"
-#include "png_data.h"
-
 #include <vmap/compare/html_report.h>
+#include <vmap/compare/shown_picture.h>
 #include <vmap/printable.h>
-#include <vmap/srgb.h>
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -61,50 +56,6 @@ std::string escaped(std::string_view text) {
         }
     }
     return result;
-}
-
-/// Exposure under which nineteen of twenty pixels of a picture do not clip.
-double exposure_for(const Picture& picture) {
-    std::vector<float> brightness;
-    brightness.reserve(picture.pixels.size());
-    for (const Imath::C3f& pixel : picture.pixels) brightness.push_back(std::max({pixel.x, pixel.y, pixel.z}));
-    const auto high =
-        brightness.begin() + static_cast<std::ptrdiff_t>(0.95 * static_cast<double>(brightness.size() - 1));
-    std::nth_element(brightness.begin(), high, brightness.end());
-    return *high > 0 ? 0.9 / *high : 1;
-}
-
-std::string picture_uri(const Picture& picture, double exposure) {
-    std::vector<std::uint8_t> bytes;
-    for (const Imath::C3f& pixel : picture.pixels)
-        for (int c = 0; c < 3; ++c) bytes.push_back(srgb8_from_linear(static_cast<float>(exposure * pixel[c])));
-    return png_data_uri(picture.width, picture.height, bytes);
-}
-
-/// Values from 0 to `top` as colours.
-template <class T>
-std::string map_uri(int width, int height, const std::vector<T>& values, double top) {
-    std::vector<std::uint8_t> bytes;
-    for (const T value : values)
-        for (const std::uint8_t c : error_color(value / top)) bytes.push_back(c);
-    return png_data_uri(width, height, bytes);
-}
-
-std::string scale_uri() {
-    constexpr int steps = 256;
-    std::vector<std::uint8_t> bytes;
-    for (int i = 0; i < steps; ++i)
-        for (const std::uint8_t c : error_color(static_cast<double>(i) / (steps - 1))) bytes.push_back(c);
-    return png_data_uri(steps, 1, bytes);
-}
-
-/// The next larger of 1, 2, 5, 10, ... of a power of ten.
-double rounded_up(double value) {
-    if (!(value > 0)) return 1;
-    const double power = std::pow(10, std::floor(std::log10(value)));
-    for (const double step : {1.0, 2.0, 5.0})
-        if (value <= step * power) return step * power;
-    return 10 * power;
 }
 
 std::string percent(double fraction) {
@@ -164,7 +115,7 @@ std::string map_figure(std::string_view title, const std::string& uri, int shown
         "<div><h2>{}</h2><img src=\"{}\" width=\"{}\" alt=\"{}\">"
         "<img src=\"{}\" width=\"{}\" height=\"10\" alt=\"scale\" style=\"margin-top:6px\">"
         "<div class=\"scale\"><span>0</span><span>{}</span></div></div>\n",
-        title, uri, shown_width, title, scale_uri(), shown_width, top);
+        title, uri, shown_width, title, png_data_uri(shown_scale()), shown_width, top);
 }
 
 std::string picture_figures(const Comparison& comparison) {
@@ -175,20 +126,22 @@ std::string picture_figures(const Comparison& comparison) {
     const int shown = width < 480 ? width * ((480 + width - 1) / width) : std::min(width, 1000);
     const double exposure = pictures.radiance ? exposure_for(pictures.reference) : 1;
     const double mean = comparison.figures().mean_reference > 0 ? comparison.figures().mean_reference : 1;
-    const double top = rounded_up(comparison.figures().p99);
+    const double top = scale_end(comparison.figures().p99);
+    const std::vector<double> flip(pictures.comparison.flip_map.begin(), pictures.comparison.flip_map.end());
 
     std::string html = fmt::format(
         "<h2>Left of the slider {}, right of it {}</h2>\n<div class=\"stack\" id=\"stack\">"
         "<img src=\"{}\" width=\"{}\" alt=\"reference\"><img id=\"a\" src=\"{}\" width=\"{}\" alt=\"result\"></div>\n"
         "<p><input type=\"range\" id=\"slider\" min=\"0\" max=\"100\" value=\"50\" style=\"width:{}px\"><br>"
         "<label><input type=\"checkbox\" id=\"flicker\"> flicker</label>",
-        escaped(comparison.result), escaped(comparison.reference), picture_uri(pictures.reference, exposure), shown,
-        picture_uri(pictures.result, exposure), shown, shown);
+        escaped(comparison.result), escaped(comparison.reference),
+        png_data_uri(shown_picture(pictures.reference, exposure)), shown,
+        png_data_uri(shown_picture(pictures.result, exposure)), shown, shown);
     if (pictures.radiance) html += fmt::format(" <small>exposure {:.4g}</small>", exposure);
     html += "</p>\n<div class=\"maps\">\n";
-    html += map_figure("Difference", map_uri(width, height, pictures.comparison.difference, top * mean), shown,
-                       fmt::format("{:g} % of the mean of the reference and more", 100 * top));
-    html += map_figure("FLIP", map_uri(width, height, pictures.comparison.flip_map, 1), shown, "1");
+    html += map_figure("Difference", png_data_uri(shown_map(width, height, pictures.comparison.difference, top * mean)),
+                       shown, fmt::format("{:g} % of the mean of the reference and more", 100 * top));
+    html += map_figure("FLIP", png_data_uri(shown_map(width, height, flip, 1)), shown, "1");
     html += "</div>\n";
     html += picture_script;
     return html;

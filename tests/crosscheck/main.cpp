@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // vmap-crosscheck: the figures of the cross-check, and the page that shows it.
 #include <crosscheck/cases.h>
+#include <crosscheck/page.h>
 #include <vmap/error.h>
+#include <vmap/exporters/file_writer.h>
 
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <cstdio>
+#include <ctime>
 #include <exception>
 #include <string>
 #include <vector>
@@ -20,6 +25,8 @@ struct Arguments {
     std::string models = VMAP_SHARED "/models";
     std::string cache;
     std::vector<std::string> only;
+    std::string page;
+    std::string row;
 };
 
 bool is_wanted(const Arguments& arguments, const Case& item) {
@@ -38,7 +45,24 @@ void print_figures(const Case& item, const Crosscheck& check) {
     std::fflush(stdout);
 }
 
+void write_text(const std::string& path, const std::string& text) {
+    FileWriter file(path);
+    file.write(text.data(), text.size());
+    file.commit();
+}
+
+/// One scene as a square row for a document: larger than the pictures of the page.
+void write_row(const std::string& path, const Scene& scene, CrosscheckConfig config) {
+    config.width = 240;
+    config.height = 240;
+    const Crosscheck check = cross_check(scene, config);
+    write_text(path, png_bytes(picture_row(check)));
+    fmt::print("{}: errors end at {:g} %; ours {:.2f} %, POV-Ray's {:.2f} % in the mean\n", path,
+               100 * error_scale(check), 100 * check.our_error.mean, 100 * check.povray_error.mean);
+}
+
 int run(const Arguments& arguments) {
+    Page page;
     for (Case& item : read_cases(arguments.cases)) {
         if (!is_wanted(arguments, item)) continue;
         const std::optional<Scene> scene = scene_of(item, arguments.scenes, arguments.models);
@@ -46,9 +70,16 @@ int run(const Arguments& arguments) {
             fmt::print("{}: its model is not there\n", item.name);
             continue;
         }
-        item.config.cache = arguments.cache;
-        print_figures(item, cross_check(*scene, item.config));
+        CrosscheckConfig& config = arguments.page.empty() ? item.config : item.slow;
+        config.cache = arguments.cache;
+        const Crosscheck check = cross_check(*scene, config);
+        print_figures(item, check);
+        if (!arguments.page.empty()) page.add(item, check);
+        if (!arguments.row.empty() && item.name == "cornell_box") write_row(arguments.row, *scene, config);
     }
+    if (!arguments.page.empty())
+        write_text(arguments.page,
+                   page.html(povray_version(), fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr)))));
     return 0;
 }
 
@@ -60,6 +91,8 @@ int parse_and_run(int argc, char** argv) {
     app.add_option("--models", arguments.models, "Folder of the larger models")->capture_default_str();
     app.add_option("--cache", arguments.cache, "Folder that keeps pictures and truths")->required();
     app.add_option("--only", arguments.only, "Names of cases; all when left out");
+    auto* page = app.add_option("--page", arguments.page, "HTML page to write, at the slower settings of the cases");
+    app.add_option("--row", arguments.row, "PNG picture of the Cornell box by all three to write")->needs(page);
     CLI11_PARSE(app, argc, argv);
     return run(arguments);
 }

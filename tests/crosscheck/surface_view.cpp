@@ -24,6 +24,13 @@ Imath::C3f clamped(const Imath::C3f& albedo) {
     return {std::clamp(albedo.x, 0.0F, 1.0F), std::clamp(albedo.y, 0.0F, 1.0F), std::clamp(albedo.z, 0.0F, 1.0F)};
 }
 
+/// Whether an edge within a texture lies between two pixels: what the pixel shows then depends on how it is filtered.
+bool differ_in_albedo(const SurfacePixel& a, const SurfacePixel& b) {
+    constexpr float step = 0.02F;
+    return std::abs(a.albedo.x - b.albedo.x) > step || std::abs(a.albedo.y - b.albedo.y) > step ||
+           std::abs(a.albedo.z - b.albedo.z) > step;
+}
+
 /// Whether two neighbouring pixels see one smooth surface: each place lies near the other's tangent plane.
 bool same_surface(const SurfacePixel& a, const SurfacePixel& b) {
     if (!a.lit_side || !b.lit_side) return a.lit_side == b.lit_side;
@@ -53,7 +60,8 @@ SurfaceView view_surface(const Scene& scene, const Camera& camera, int width, in
                 .emission = rays.shading().emission(hit->place)};
         }
     const std::vector<bool> borders = near_difference(view, 1, [&](std::size_t a, std::size_t b) {
-        return materials[a] != materials[b] || !same_surface(view.pixels[a], view.pixels[b]);
+        return materials[a] != materials[b] || differ_in_albedo(view.pixels[a], view.pixels[b]) ||
+               !same_surface(view.pixels[a], view.pixels[b]);
     });
     for (std::size_t i = 0; i < borders.size(); ++i) view.pixels[i].border = borders[i];
     return view;

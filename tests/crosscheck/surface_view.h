@@ -18,7 +18,7 @@ struct SurfacePixel {
     reference::ReferencePoint point;
     Imath::C3f albedo{0, 0, 0};    ///< clamped to [0, 1]
     Imath::C3f emission{0, 0, 0};  ///< W/(m^2 sr)
-    bool border = false;  ///< within one pixel something else is seen: another plane, another material, nothing
+    bool border = false;  ///< within one pixel something else is seen: another plane, material or colour, nothing
 };
 
 struct SurfaceView {
