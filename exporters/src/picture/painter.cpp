@@ -177,7 +177,8 @@ C3f Painter::color_at(const Sighted& seen, Workspace& workspace) const {
     Mix& mix = workspace.mix;
     const bool from_scene = shading_ && config_.content == PictureContent::albedo;
     const V3d side = seen.front || shape.has_back ? seen.normal : -seen.normal;
-    if (!from_scene) field_.mix_at({V3f(seen.position), V3f(side), shape.sheet, shape.curved}, workspace.field, mix);
+    if (!from_scene)
+        field_.mix_at({V3f(seen.position), V3f(side), shape.sheet, shape.curved}, shapes_, workspace.field, mix);
     switch (config_.content) {
         case PictureContent::albedo:
             return from_scene || !mix.empty() ? albedo_at(seen, mix) : C3f(0);

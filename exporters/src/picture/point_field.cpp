@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "frame.h"
 #include "shapes.h"
 
 namespace vmap::picture {
@@ -36,6 +37,10 @@ constexpr float plane_height = 0.02F;     ///< in spacings
 constexpr float least_normal_cos = 0.3F;  ///< points that face farther away never count
 constexpr float rough_height = 0.8F;      ///< in spacings
 
+/// Surface from this height over a plane on may cut off a part of it, in spacings.
+constexpr float contact_height = 0.05F;
+constexpr float contact_lift = 0.5F;
+
 constexpr int cell_bits = 19;
 constexpr std::int64_t cell_limit = std::int64_t{1} << cell_bits;
 
@@ -43,10 +48,6 @@ std::uint64_t hash(std::uint64_t key) {
     key ^= key >> 31;
     key *= 0x9E3779B97F4A7C15ULL;
     return key ^ (key >> 29);
-}
-
-V3f any_perpendicular(const V3f& n) {
-    return n.cross(std::abs(n.x) < 0.6F ? V3f(1, 0, 0) : V3f(0, 1, 0)).normalized();
 }
 
 /// Solves M a = (1, 0, 0, ...) for a symmetric positive definite matrix given by its lower half, by Cholesky's method.
@@ -206,6 +207,7 @@ void PointField::neighbours(const V3f& position, float scale, Workspace& workspa
 /// The points whose reach covers the place and that lie on its surface.
 void PointField::gather(const SurfacePoint& place, float scale, Workspace& workspace) const {
     workspace.candidates_.clear();
+    workspace.above_.clear();
     workspace.coplanar_count_ = 0;
     for (const Level& level : levels_)
         for (const Range& range : ranges_around(level, place.position, scale, workspace))
@@ -215,6 +217,7 @@ void PointField::gather(const SurfacePoint& place, float scale, Workspace& works
                 const float limit = scale * reach * point.spacing;
                 const float share = offset.length2() / (limit * limit);
                 if (share >= 1) continue;
+                if (place.normal.dot(offset) > contact_height * point.spacing) workspace.above_.push_back(index_[i]);
                 if (point.sheet != place.sheet && place.sheet != any_sheet) continue;
                 const float cos = place.normal.dot(point.normal);
                 if (cos < least_normal_cos) continue;
@@ -230,6 +233,23 @@ void PointField::gather(const SurfacePoint& place, float scale, Workspace& works
                 workspace.candidates_.push_back(
                     {offset, point.normal, (1 - share) * (1 - share), point.spacing, index_[i], coplanar});
             }
+}
+
+/// Leaves out points of the place's plane that other surfaces cut off from it: those that points above the plane are
+/// on.
+void PointField::leave_out_separated(const SurfacePoint& place, const Shapes& shapes, Workspace& workspace) const {
+    std::vector<std::uint32_t>& polygons = workspace.above_;
+    if (workspace.coplanar_count_ == 0 || polygons.empty() || shapes.point_polygons.empty()) return;
+    for (std::uint32_t& entry : polygons) entry = shapes.point_polygons[entry];
+    std::sort(polygons.begin(), polygons.end());
+    polygons.erase(std::unique(polygons.begin(), polygons.end()), polygons.end());
+    workspace.contacts_.start(place.position, place.normal, contact_lift * workspace.candidates_.front().spacing);
+    for (const std::uint32_t polygon : polygons)
+        if (!shapes.shapes[polygon].may_be_cut) workspace.contacts_.add(shapes.polygons[polygon]);
+    if (workspace.contacts_.empty()) return;
+    workspace.coplanar_count_ -= std::erase_if(workspace.candidates_, [&](const Workspace::Candidate& c) {
+        return c.coplanar && workspace.contacts_.separates(c.offset);
+    });
 }
 
 /// Moving least squares in the place's frame: the value at the place of the fit through the points' values is a
@@ -294,12 +314,13 @@ void PointField::weigh(const SurfacePoint& place, Workspace& workspace, Mix& mix
         });
 }
 
-void PointField::mix_at(const SurfacePoint& place, Workspace& workspace, Mix& mix) const {
+void PointField::mix_at(const SurfacePoint& place, const Shapes& shapes, Workspace& workspace, Mix& mix) const {
     mix.clear();
     if (points_.empty()) return;
     SurfacePoint asked = place;
     for (const float scale : widenings) {
         gather(asked, scale, workspace);
+        leave_out_separated(asked, shapes, workspace);
         const bool enough =
             workspace.coplanar_count_ >= enough_in_plane || workspace.candidates_.size() >= enough_on_curve;
         // A small sheet may hold only a few points: far ones add nothing.

@@ -18,7 +18,11 @@
 #include <span>
 #include <vector>
 
+#include "contact.h"
+
 namespace vmap::picture {
+
+struct Shapes;
 
 /// A place on a surface.
 struct SurfacePoint {
@@ -53,7 +57,8 @@ public:
 
     /// The points that make up a place. Points of the same plane alone if there are enough of them; else those of the
     /// curved surface around it, as a function of place and normal. Empty when no points lie near.
-    void mix_at(const SurfacePoint& place, Workspace& workspace, Mix& mix) const;
+    /// - shapes: the surface that the points are on
+    void mix_at(const SurfacePoint& place, const Shapes& shapes, Workspace& workspace, Mix& mix) const;
 
     /// Points within their own reach, widened `scale` times, of a place, whatever their normals and sheets.
     void neighbours(const Imath::V3f& position, float scale, Workspace& workspace,
@@ -87,6 +92,7 @@ private:
     void collect_ranges(const Level& level, const Cell& center, int rings, std::vector<Range>& ranges) const;
     [[nodiscard]] const std::vector<Range>& ranges_around(const Level& level, const Imath::V3f& position, float scale,
                                                           Workspace& workspace) const;
+    void leave_out_separated(const SurfacePoint& place, const Shapes& shapes, Workspace& workspace) const;
     void gather(const SurfacePoint& place, float scale, Workspace& workspace) const;
     void weigh(const SurfacePoint& place, Workspace& workspace, Mix& mix) const;
 
@@ -121,6 +127,8 @@ private:
     std::array<Remembered, 256> remembered_;
     std::vector<Range> ranges_;
     std::vector<Candidate> candidates_;
+    std::vector<std::uint32_t> above_;  ///< points over the place's plane; then the polygons they are on
+    Contacts contacts_;
     std::size_t coplanar_count_ = 0;
 };
 

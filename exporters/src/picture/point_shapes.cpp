@@ -9,6 +9,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "frame.h"
 #include "point_field.h"
 #include "shapes.h"
 
@@ -25,10 +26,6 @@ constexpr float neighbourhood = 1.5F;  ///< in reaches of the points' interpolat
 
 /// How far the outlines behind the discs reach beyond their points' share, in spacings: no cracks between groups.
 constexpr float backing_overlap = 0.5;
-
-V3f any_perpendicular(const V3f& n) {
-    return n.cross(std::abs(n.x) < 0.6F ? V3f(1, 0, 0) : V3f(0, 1, 0)).normalized();
-}
 
 void add_polygon(Shapes& result, std::span<const V3f> vertices, const V3f& normal, bool emits, bool curved) {
     Shape shape;
@@ -123,16 +120,21 @@ Shapes shapes_of(const PointCloud& cloud, const PointField& field) {
     });
 
     Shapes result;
+    result.point_polygons.resize(cloud.size());
     std::vector<V3f> moved;
     for (std::size_t p = 0; p < set.patches.size(); ++p) {
         const Patch& patch = set.patches[p];
         const std::span<const V3f> outline = set.outlines[p];
         if (patch.flat) {
+            for (const std::uint32_t i : set.points_of(patch))
+                result.point_polygons[i] = static_cast<std::uint32_t>(result.shapes.size());
             add_polygon(result, outline, patch.normal, patch.emits, false);
             continue;
         }
-        for (const std::uint32_t i : set.points_of(patch))
+        for (const std::uint32_t i : set.points_of(patch)) {
+            result.point_polygons[i] = static_cast<std::uint32_t>(result.shapes.size());
             add_disc(result, cloud.positions[i], cloud.normals[i], radii[i], patch.emits);
+        }
         // The group's own outline closes what gaps the discs of unevenly spread points leave, from just behind them.
         if (patch.point_count < 6) continue;
         const std::span<const std::uint32_t> points = set.points_of(patch);

@@ -75,6 +75,7 @@ Shapes shapes_of(const Scene& scene, const PointCloud& cloud) {
         result.point_sheets.assign(cloud.size(), any_sheet);
         return result;
     }
+    result.point_polygons = cloud.faces;
     // Points on the back of a face: all faces of that part of the scene have their backs lit.
     std::vector<char> back_lit(scene.instances.size(), 0);
     result.point_sheets.resize(cloud.size());

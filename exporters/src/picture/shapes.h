@@ -33,7 +33,8 @@ struct Shape {
 struct Shapes {
     PolygonSet polygons;  ///< relative to the cloud's origin, counter-clockwise seen from the front
     std::vector<Shape> shapes;
-    std::vector<std::uint32_t> point_sheets;  ///< of each point; only of a scene's shapes
+    std::vector<std::uint32_t> point_sheets;    ///< of each point; only of a scene's shapes
+    std::vector<std::uint32_t> point_polygons;  ///< that each point is on; empty when that is not known
 };
 
 /// One polygon per triangle of the scene, numbered as its faces are.

@@ -232,6 +232,24 @@ TEST_P(PictureOf, ALampJustBelowACeilingKeepsItsOwnLight) {
         }
 }
 
+TEST_P(PictureOf, TheDarkUnderABoxDoesNotShowAroundIt) {
+    Scene scene;
+    test::add(scene, test::grid_mesh(2, 2, 1, 1), grey(0.5F));
+    test::add(scene, test::box_mesh({0.5F, 0.5F, 0.5F}), grey(0.5F), moved({0.75, 0.75, 0}));
+    const LitCloud cloud = lit_points(scene, 0.05, [](const V3d& p, const V3d&) {
+        const bool under = p.z == 0 && std::abs(p.x - 1) < 0.25 && std::abs(p.y - 1) < 0.25;
+        return C3f(under ? 0.0F : 1.0F);
+    });
+    for (const V3d& from : {V3d(1, -3, 3), V3d(4, 4, 2), V3d(1, 1, 5)}) {
+        const Picture picture = render_picture(cloud, looking(from, {1, 1, 0}), irradiance_picture, source(scene));
+        // Samples that hit the very edge between box and floor may see either.
+        std::size_t darkened = 0;
+        for (std::size_t i = 0; i < picture.pixels.size(); ++i)
+            if (std::abs(picture.pixels[i].x - picture.alpha[i]) > 1e-3F) ++darkened;
+        EXPECT_LE(darkened, 10U);
+    }
+}
+
 TEST_P(PictureOf, SameAtAnyNumberOfThreads) {
     Scene scene = test::scene_of(room_mesh({1, 1, 1}), grey(0.5F));
     test::add(scene, test::sphere_mesh(32, 16), grey(0.7F),
