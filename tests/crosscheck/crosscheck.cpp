@@ -195,16 +195,25 @@ void compare_with_truth(const Scene& scene, const CrosscheckConfig& config, Cros
 
 }  // namespace
 
+LitPicture light_and_draw(const Scene& scene, const CrosscheckConfig& config) {
+    const auto start = std::chrono::steady_clock::now();
+    LitPicture lit;
+    lit.cloud = light_points(scene, config);
+    lit.picture =
+        render_picture(lit.cloud, scene.cameras.at(0), {.width = config.width, .height = config.height}, &scene);
+    lit.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    return lit;
+}
+
 Crosscheck cross_check(const Scene& scene, const CrosscheckConfig& config) {
     const Camera& camera = scene.cameras.at(0);
     Crosscheck check;
     check.view = view_surface(scene, camera, config.width, config.height);
     check.pixels = pixels_to_compare(scene, check.view);
 
-    const auto start = std::chrono::steady_clock::now();
-    const LitCloud cloud = light_points(scene, config);
-    check.ours = render_picture(cloud, camera, {.width = config.width, .height = config.height}, &scene);
-    check.our_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const LitPicture lit = light_and_draw(scene, config);
+    check.ours = lit.picture;
+    check.our_seconds = lit.seconds;
 
     PovConfig povray;
     povray.preset = config.preset;
@@ -217,7 +226,7 @@ Crosscheck cross_check(const Scene& scene, const CrosscheckConfig& config) {
     Pairs picture;
     for (const std::size_t i : check.pixels) picture.add(check.ours.pixels[i], check.povray.picture.pixels[i]);
     check.picture = picture.figures();
-    compare_files(write_and_read(cloud), check);
+    compare_files(write_and_read(lit.cloud), check);
     compare_with_truth(scene, config, check);
     return check;
 }

@@ -7,6 +7,7 @@
 #include <crosscheck/surface_view.h>
 #include <vmap/compare/difference_figures.h>
 #include <vmap/exporters/picture.h>
+#include <vmap/point_cloud.h>
 #include <vmap/scene.h>
 
 #include <cstddef>
@@ -44,6 +45,16 @@ struct Crosscheck {
     DifferenceFigures povray_error;
     double truth_noise = 0;  ///< mean standard error / mean
 };
+
+struct LitPicture {
+    LitCloud cloud;
+    Picture picture;
+    double seconds = 0;  ///< from the scene in memory to the picture in memory
+};
+
+/// The first part of the cross-check: the scene as lit points and their picture.
+/// - scene: with a camera
+[[nodiscard]] LitPicture light_and_draw(const Scene& scene, const CrosscheckConfig& config);
 
 /// - scene: with a camera
 /// - throws std::runtime_error when POV-Ray fails

@@ -18,7 +18,7 @@ namespace vmap::crosscheck {
 struct PovPicture {
     Picture picture;
     std::string options;  ///< what povray was called with
-    double seconds = 0;   ///< that povray took when the picture was made
+    double seconds = 0;   ///< of processor time that povray took when the picture was made
     bool kept = false;    ///< from an earlier run
 };
 
