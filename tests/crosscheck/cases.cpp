@@ -97,7 +97,7 @@ std::vector<Case> read_cases(const std::filesystem::path& file) {
         read_config(entry, item.config);
         item.slow = item.config;
         item.slow.whole_truth = true;
-        item.slow.truth_samples = 2048;
+        item.slow.truth_samples = 1024;
         if (entry.contains("slow")) read_config(entry.at("slow"), item.slow);
         for (const auto& [name, limits] : entry.at("limits").items())
             item.limits[name] = {.median = limits.at("median"), .p95 = limits.at("p95")};
