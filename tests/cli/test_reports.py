@@ -7,7 +7,7 @@ import re
 import pytest
 from conftest import scene, succeed, vmap
 
-COMMANDS = ("light", "sample", "info", "render", "export", "compare")
+COMMANDS = ("light", "sample", "info", "build", "query", "render", "export", "compare")
 FIELDS = {
     "version", "input", "seed", "threads", "points", "nodes", "leaves", "patches", "links", "lights", "seconds",
     "tolerance", "error_estimate", "mean_irradiance", "peak_memory_bytes", "warnings", "outputs",

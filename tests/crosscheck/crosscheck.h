@@ -35,7 +35,7 @@ struct Crosscheck {
     std::vector<std::size_t> pixels;  ///< that are compared: lit sides without emission, away from borders and, where
                                       ///< all light comes from points, spots and suns, from the edges of shadows
     Picture ours;
-    double our_seconds = 0;  ///< from the scene in memory to the picture in memory
+    double our_seconds = 0;  ///< of processor time, from the scene in memory to the picture in memory
     PovPicture povray;
     DifferenceFigures picture;    ///< our picture against POV-Ray's
     DifferenceFigures ply;        ///< E from the PLY file against E from POV-Ray's picture
@@ -49,7 +49,8 @@ struct Crosscheck {
 struct LitPicture {
     LitCloud cloud;
     Picture picture;
-    double seconds = 0;  ///< from the scene in memory to the picture in memory
+    double seconds = 0;            ///< from the scene in memory to the picture in memory
+    double processor_seconds = 0;  ///< the same, summed over the threads
 };
 
 /// The first part of the cross-check: the scene as lit points and their picture.

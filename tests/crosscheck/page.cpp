@@ -84,7 +84,7 @@ std::string figures_table(const Crosscheck& check) {
 
 std::string times_of(const Crosscheck& check) {
     return fmt::format(
-        "<p>Light and picture by vmap: {:.2f} s. POV-Ray: {:.1f} s on one thread (<code>{}</code>). Noise of the path "
+        "<p>Light and picture by vmap: {:.2f} processor seconds. POV-Ray: {:.1f} (<code>{}</code>). Noise of the path "
         "tracer: {:.2f} % of the mean.</p>\n",
         check.our_seconds, check.povray.seconds, check.povray.options, 100 * check.truth_noise);
 }
@@ -105,7 +105,7 @@ ShownPicture picture_row(const Crosscheck& check) {
     const int height = check.ours.height;
     const int count = static_cast<int>(parts.size());
     ShownPicture row{.width = count * (width + gap) - gap, .height = height, .rgb = {}};
-    row.rgb.assign(static_cast<std::size_t>(3 * row.width * height), 255);
+    row.rgb.assign(std::size_t{3} * static_cast<std::size_t>(row.width) * static_cast<std::size_t>(height), 255);
     for (int k = 0; k < count; ++k)
         for (int y = 0; y < height; ++y)
             std::copy_n(parts[static_cast<std::size_t>(k)].rgb.begin() + std::ptrdiff_t{3} * y * width, 3 * width,
@@ -141,7 +141,7 @@ std::string Page::html(const std::string& povray, const std::string& date) const
     text += fmt::format("<p>POV-Ray {}; made on {} by <code>scripts/crosscheck</code>.</p>\n", povray, date);
     text +=
         "<table><thead><tr><td></td><td colspan=\"3\">error of vmap, %</td><td colspan=\"3\">error of POV-Ray, "
-        "%</td><td colspan=\"2\">seconds</td></tr><tr><th>scene</th>";
+        "%</td><td colspan=\"2\">processor seconds</td></tr><tr><th>scene</th>";
     for (const char* name : {"median", "mean", "p95", "median", "mean", "p95", "vmap", "POV-Ray"})
         text += fmt::format("<th class=\"n\">{}</th>", name);
     text += "</tr></thead>\n";
