@@ -9,11 +9,13 @@
 #include "report.h"
 #include "stopwatch.h"
 
+#include <vmap/compare/picture_file.h>
 #include <vmap/error.h>
 #include <vmap/light.h>
 
 #include <fmt/format.h>
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -41,6 +43,14 @@ double mean_irradiance(const LitCloud& cloud) {
     return area > 0 ? sum / area : 0;
 }
 
+/// Numbers are one radiance from all around; anything else names a panorama.
+Sky read_sky(const std::string& text) {
+    const bool numbers = text.find_first_not_of("0123456789.,+-eE") == std::string::npos;
+    if (numbers && !std::filesystem::exists(text)) return even_sky(parse_color("--sky", text));
+    const Picture panorama = read_picture(text);
+    return sky_of_panorama(panorama.pixels, panorama.width, panorama.height);
+}
+
 void run_light(LightOptions options, Job& job) {
     const Stopwatch total;
     std::vector<std::string> written = options.output.paths;
@@ -52,7 +62,7 @@ void run_light(LightOptions options, Job& job) {
 
     LoadedPoints loaded = load_points(options.load, job);
     options.light.seed = job.options().seed;
-    if (!options.sky.empty()) options.light.sky = parse_color("--sky", options.sky);
+    if (!options.sky.empty()) options.light.sky = read_sky(options.sky);
     LightResult light;
     try {
         light = compute_light(loaded.cloud.points, loaded.lights, options.light, job.progress());
@@ -100,8 +110,10 @@ Command add_light_command(CLI::App& program) {
     app->add_option("--tolerance", options->light.tolerance, "Error asked for: mean |dE| over mean E")
         ->type_name("T")
         ->capture_default_str();
-    app->add_option("--sky", options->sky, "Radiance of the sky around, W/(m^2 sr): one number or R,G,B")
-        ->type_name("L");
+    app->add_option("--sky", options->sky,
+                    "Light from all around: radiance in W/(m^2 sr), one number or R,G,B; or a panorama (.exr), "
+                    "centre along +X, up on top")
+        ->type_name("L|FILE");
     app->add_option("--json", options->report, "Writes a report there; - is standard output")->type_name("FILE");
     return {app, [options](Job& job) { run_light(*options, job); }};
 }

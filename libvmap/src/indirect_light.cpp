@@ -114,7 +114,8 @@ private:
                 sent[i] += surface_.cloud.emission[i] * std::numbers::pi_v<float>;
         });
         first_radiosity_ = texels_.means_of(sent);
-        first_radiosity_.push_back(config_.sky * std::numbers::pi_v<float>);
+        for (const C3f& radiance : config_.sky.radiance)
+            first_radiosity_.push_back(radiance * std::numbers::pi_v<float>);
     }
 
     void place_texels(bool careful) {
@@ -171,7 +172,7 @@ private:
                 hit = surface_.hit_in_crack(ray);
             }
             if (!hit) {
-                if (open) hits_[r * hits.size() + k] = sky_texel();
+                if (open && !config_.sky.empty()) hits_[r * hits.size() + k] = sky_texel(ray.direction);
                 if (!open && folds_over(receiver, hits[k])) ++backs;
                 continue;
             }
@@ -190,7 +191,9 @@ private:
     }
 
     /// The sky stands behind the texels of the patches. It reflects nothing.
-    [[nodiscard]] std::uint32_t sky_texel() const { return static_cast<std::uint32_t>(texels_.size()); }
+    [[nodiscard]] std::uint32_t sky_texel(const V3f& direction) const {
+        return static_cast<std::uint32_t>(texels_.size() + config_.sky.at(direction));
+    }
 
     [[nodiscard]] std::span<const std::uint32_t> hits_of(std::size_t r) const {
         return std::span(hits_).subspan(r * fineness_.rays, fineness_.rays);
@@ -211,7 +214,7 @@ private:
     /// What the texels reflect of the indirect light alone.
     [[nodiscard]] std::vector<C3f> reflected(const std::vector<float>& x) const {
         const std::vector<Quadratic> field = fit_->fit(x);
-        std::vector<C3f> radiosity(texels_.size() + 1, C3f(0, 0, 0));
+        std::vector<C3f> radiosity(first_radiosity_.size(), C3f(0, 0, 0));
         tbb::parallel_for(std::size_t{0}, texels_.size(), [&](std::size_t t) {
             radiosity[t] = product(albedo_[t], fit_->value_at(places_[t], field));
         });

@@ -11,6 +11,7 @@
 #include "surface.h"
 
 #include <vmap/progress.h>
+#include <vmap/sky.h>
 
 #include <Imath/ImathColor.h>
 
@@ -24,7 +25,7 @@ struct IndirectConfig {
     double tolerance = 0.01;
     std::uint64_t seed = 1;
     bool gather_emission = false;  ///< emission is seen by the rays: the direct light leaves it out
-    Imath::C3f sky{0, 0, 0};       ///< radiance from where no surface is
+    Sky sky;                       ///< what rays see that meet no surface
 };
 
 struct IndirectResult {

@@ -31,10 +31,12 @@ void check(const PointCloud& cloud, std::span<const LightSource> lights, const L
     const bool glows = std::any_of(cloud.emission.begin(), cloud.emission.end(), positive);
     const bool lit =
         std::any_of(lights.begin(), lights.end(), [&](const LightSource& light) { return positive(light.intensity); });
-    for (int c = 0; c < 3; ++c)
-        if (!(config.sky[c] >= 0 && std::isfinite(config.sky[c])))
-            throw UsageError("sky radiance " + std::to_string(config.sky[c]) + ": expected finite values of 0 or more");
-    if (!glows && !lit && !positive(config.sky))
+    const bool sound = std::all_of(config.sky.radiance.begin(), config.sky.radiance.end(), [](const C3f& c) {
+        return c.x >= 0 && c.y >= 0 && c.z >= 0 && std::isfinite(c.x + c.y + c.z);
+    });
+    if (!sound) throw UsageError("the sky: expected finite values of 0 or more");
+    const bool shines = std::any_of(config.sky.radiance.begin(), config.sky.radiance.end(), positive);
+    if (!glows && !lit && !shines)
         throw UnsupportedInput("nothing emits light: expected a light source, an emissive surface or a sky");
 }
 

@@ -6,6 +6,7 @@
 #include <vmap/light_source.h>
 #include <vmap/point_cloud.h>
 #include <vmap/progress.h>
+#include <vmap/sky.h>
 
 #include <cstddef>
 #include <cstdint>
@@ -18,7 +19,7 @@ namespace vmap {
 struct LightConfig {
     double tolerance = 0.01;  ///< mean |dE| / mean E asked for, in (0, 1]
     std::uint64_t seed = 1;   ///< of the quasi-random rays
-    Imath::C3f sky{0, 0, 0};  ///< radiance from where no surface is, W/(m^2 sr), linear Rec.709
+    Sky sky;                  ///< what is seen where no surface is; none by default
 };
 
 /// What the computation made, spent and left open.

@@ -406,27 +406,27 @@ TEST(RenderPicture, RefusesWhatMakesNoPicture) {
     const Scene scene = test::scene_of(test::grid_mesh(1, 1, 1, 1));
     const LitCloud cloud = lit_points(scene, 0.1, constant_light);
     const Camera camera = looking({0.5, 0.5, 2}, {0.5, 0.5, 0});
-    EXPECT_THROW(render_picture(cloud, camera, {.width = 0}), UsageError);
-    EXPECT_THROW(render_picture(cloud, camera, {.height = max_picture_side + 1}), UsageError);
-    EXPECT_THROW(render_picture(cloud, camera, {.content = PictureContent::paint}), UsageError);
+    EXPECT_THROW((void)render_picture(cloud, camera, {.width = 0}), UsageError);
+    EXPECT_THROW((void)render_picture(cloud, camera, {.height = max_picture_side + 1}), UsageError);
+    EXPECT_THROW((void)render_picture(cloud, camera, {.content = PictureContent::paint}), UsageError);
 
     Camera blind = camera;
     blind.vertical_fov = 0;
-    EXPECT_THROW(render_picture(cloud, blind), UsageError);
+    EXPECT_THROW((void)render_picture(cloud, blind), UsageError);
     blind.orthographic = true;
     blind.half_height = -1;
-    EXPECT_THROW(render_picture(cloud, blind), UsageError);
+    EXPECT_THROW((void)render_picture(cloud, blind), UsageError);
     Camera lost = camera;
     lost.world_from_camera[3][0] = std::numeric_limits<double>::quiet_NaN();
-    EXPECT_THROW(render_picture(cloud, lost), UsageError);
+    EXPECT_THROW((void)render_picture(cloud, lost), UsageError);
     Camera flat = camera;
     flat.world_from_camera = M44d(0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1);
-    EXPECT_THROW(render_picture(cloud, flat), UsageError);
+    EXPECT_THROW((void)render_picture(cloud, flat), UsageError);
 
     LitCloud dark = cloud;
     dark.irradiance.clear();
-    EXPECT_THROW(render_picture(dark, camera), UsageError);
-    EXPECT_NO_THROW(render_picture(dark, camera, {.width = 8, .height = 8, .content = PictureContent::albedo}));
+    EXPECT_THROW((void)render_picture(dark, camera), UsageError);
+    EXPECT_NO_THROW((void)render_picture(dark, camera, {.width = 8, .height = 8, .content = PictureContent::albedo}));
 }
 
 TEST(RenderPicture, RefusesASceneThatThePointsAreNotFrom) {
@@ -435,9 +435,9 @@ TEST(RenderPicture, RefusesASceneThatThePointsAreNotFrom) {
     const Camera camera = looking({0.5, 0.5, 2}, {0.5, 0.5, 0});
     const Scene smaller = test::scene_of(test::grid_mesh(1, 1, 1, 1), grey(0.5F));
     const Scene elsewhere = test::scene_of(test::grid_mesh(1, 1, 2, 2), grey(0.5F), moved({0, 0, 1}));
-    EXPECT_NO_THROW(render_picture(cloud, camera, {.width = 8, .height = 8}, &scene));
-    EXPECT_THROW(render_picture(cloud, camera, {.width = 8, .height = 8}, &smaller), UsageError);
-    EXPECT_THROW(render_picture(cloud, camera, {.width = 8, .height = 8}, &elsewhere), UsageError);
+    EXPECT_NO_THROW((void)render_picture(cloud, camera, {.width = 8, .height = 8}, &scene));
+    EXPECT_THROW((void)render_picture(cloud, camera, {.width = 8, .height = 8}, &smaller), UsageError);
+    EXPECT_THROW((void)render_picture(cloud, camera, {.width = 8, .height = 8}, &elsewhere), UsageError);
 }
 
 }  // namespace

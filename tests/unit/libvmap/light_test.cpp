@@ -120,9 +120,34 @@ TEST(ComputeLight, SunCastsASharpShadow) {
 TEST(ComputeLight, OpenGroundUnderASkyGetsPiTimesItsRadiance) {
     PointCloud ground;
     add_wall(ground, V3f(0), V3f(1, 0, 0), V3f(0, 1, 0), 40, 0.5F, 0);
-    const LightResult result = compute_light(ground, {}, {.sky = C3f(1, 2, 0.5F)});
+    const LightResult result = compute_light(ground, {}, {.sky = even_sky(C3f(1, 2, 0.5F))});
     for (const C3f& e : result.irradiance)
         for (int c = 0; c < 3; ++c) EXPECT_NEAR(e[c], std::numbers::pi_v<float> * C3f(1, 2, 0.5F)[c], 1e-4F);
+}
+
+// A sky that shines from one half only: the half x > 0 of a panorama gives a floor half of what all of it would, and a
+// wall that faces it all.
+TEST(ComputeLight, APanoramaShinesFromItsSide) {
+    constexpr int width = 600;
+    constexpr int height = 300;
+    std::vector<C3f> pixels(std::size_t{width} * height, C3f(0));
+    for (int y = 0; y < height; ++y)
+        for (int x = width / 4; x < 3 * width / 4; ++x) pixels[static_cast<std::size_t>(y * width + x)] = C3f(2);
+    const LightConfig config{.tolerance = 0.0025, .sky = sky_of_panorama(pixels, width, height)};
+    EXPECT_EQ(config.sky.width, 256);
+    const auto light_on = [&](const V3f& a, const V3f& b) {
+        PointCloud square;
+        add_wall(square, V3f(0), a, b, 20, 0, 0);
+        return static_cast<float>(mean(compute_light(square, {}, config).irradiance, 0, 400)) /
+               (2 * std::numbers::pi_v<float>);
+    };
+    const V3f x(1, 0, 0);
+    const V3f y(0, 1, 0);
+    const V3f z(0, 0, 1);
+    EXPECT_NEAR(light_on(y, z), 1, 0.01F);     // faces +x
+    EXPECT_NEAR(light_on(z, y), 0, 0.01F);     // faces -x
+    EXPECT_NEAR(light_on(z, x), 0.5F, 0.01F);  // faces up
+    EXPECT_NEAR(light_on(x, y), 0.5F, 0.01F);  // faces +z
 }
 
 // The sky fills the opening of a black box: E / pi on its floor is the form factor to the lid, 0.199825 for a cube.
@@ -135,7 +160,7 @@ TEST(ComputeLight, FloorOfAnOpenBoxSeesTheSkyThroughItsOpening) {
     open(box.areas);
     open(box.albedo);
     open(box.emission);
-    const LightResult result = compute_light(box, {}, {.sky = C3f(1)});
+    const LightResult result = compute_light(box, {}, {.sky = even_sky(C3f(1))});
     EXPECT_NEAR(mean(result.irradiance, 0, 3600) / std::numbers::pi, 0.199825, 0.001);
 }
 
