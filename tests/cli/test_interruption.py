@@ -13,10 +13,13 @@ PATIENCE = 3.0  # seconds: a user waits one at most, a machine that does other t
 
 
 def has_begun(process):
-    """Whether it has taken the signals over; while its libraries are loaded it dies of them like any program."""
+    """Whether it has taken the signals over; while its libraries are loaded it dies of them like any program.
+
+    That all signals are blocked says nothing: the C library does so for a moment whenever a thread is made.
+    """
     status = Path(f"/proc/{process.pid}/status").read_text()
     blocked = int(status.split("SigBlk:")[1].split()[0], 16)
-    return blocked >> (signal.SIGINT - 1) & 1
+    return blocked >> (signal.SIGINT - 1) & 1 and not blocked >> (signal.SIGWINCH - 1) & 1
 
 
 def stopped(arguments, kind, after):

@@ -128,11 +128,11 @@ TEST(ComputeLight, OpenGroundUnderASkyGetsPiTimesItsRadiance) {
 // A sky that shines from one half only: the half x > 0 of a panorama gives a floor half of what all of it would, and a
 // wall that faces it all.
 TEST(ComputeLight, APanoramaShinesFromItsSide) {
-    constexpr int width = 600;
-    constexpr int height = 300;
-    std::vector<C3f> pixels(std::size_t{width} * height, C3f(0));
-    for (int y = 0; y < height; ++y)
-        for (int x = width / 4; x < 3 * width / 4; ++x) pixels[static_cast<std::size_t>(y * width + x)] = C3f(2);
+    constexpr std::size_t width = 600;
+    constexpr std::size_t height = 300;
+    std::vector<C3f> pixels(width * height, C3f(0));
+    for (std::size_t y = 0; y < height; ++y)
+        for (std::size_t x = width / 4; x < 3 * width / 4; ++x) pixels[y * width + x] = C3f(2);
     const LightConfig config{.tolerance = 0.0025, .sky = sky_of_panorama(pixels, width, height)};
     EXPECT_EQ(config.sky.width, 256);
     const auto light_on = [&](const V3f& a, const V3f& b) {
