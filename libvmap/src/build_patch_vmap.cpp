@@ -2,6 +2,7 @@
 #include "build_methods.h"
 #include "collect_links.h"
 #include "patch_pairs.h"
+#include "shaft.h"
 
 #include <vmap/build_patch_vmap.h>
 
@@ -73,19 +74,11 @@ private:
     [[nodiscard]] std::vector<std::uint32_t> near(const NodePair& pair) const {
         std::vector<std::uint32_t> found;
         if (tree_.nodes[pair.first].patch == no_index || tree_.nodes[pair.second].patch == no_index) return found;
-        Imath::Box3d box;
+        Imath::Box3f box;
         for (const std::uint32_t n : {pair.first, pair.second})
-            for (const Imath::V3d& corner : visibility_.box(n).corners()) box.extendBy(corner);
-        std::array<HalfSpace, 6> around{};
-        const double growth = 2 * visibility_.box_growth();
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const auto i = static_cast<int>(axis);
-            Imath::V3f unit(0);
-            unit[i] = 1;
-            around.at(2 * axis) = {unit, static_cast<float>(box.max[i] + growth)};
-            around.at(2 * axis + 1) = {-unit, static_cast<float>(growth - box.min[i])};
-        }
-        visibility_.bvh().polygons_in(around, found);
+            for (const Imath::V3d& corner : visibility_.box(n).corners()) box.extendBy(Imath::V3f(corner));
+        const auto growth = static_cast<float>(2 * visibility_.box_growth());
+        visibility_.bvh().polygons_in(Shaft::around(box, growth).half_spaces(), found);
         return found;
     }
 

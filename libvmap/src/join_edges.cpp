@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "join_edges.h"
 
+#include "shaft.h"
+
 #include <vmap/outline.h>
 #include <vmap/polygon_bvh.h>
 
@@ -28,26 +30,6 @@ constexpr double least_fold = 0.02;
 /// Sine of the angle with the floor at which something is a wall.
 constexpr double least_wall_slope = 0.2;
 constexpr std::size_t least_part_points = 12;  ///< on either side of a wall that cuts a piece
-
-/// The box and `margin` around it.
-std::array<HalfSpace, 6> half_spaces_around(const Imath::Box3f& box, float margin) {
-    std::array<HalfSpace, 6> around{};
-    for (int axis = 0; axis < 3; ++axis) {
-        V3f unit(0);
-        unit[axis] = 1;
-        around.at(2 * static_cast<std::size_t>(axis)) = {unit, box.max[axis] + margin};
-        around.at(2 * static_cast<std::size_t>(axis) + 1) = {-unit, margin - box.min[axis]};
-    }
-    return around;
-}
-
-/// False only if a polygon lies wholly outside of one of the half-spaces.
-bool may_reach(std::span<const V3f> polygon, std::span<const HalfSpace> spaces) {
-    return std::none_of(spaces.begin(), spaces.end(), [&](const HalfSpace& half) {
-        return std::all_of(polygon.begin(), polygon.end(),
-                           [&](const V3f& v) { return half.normal.dot(v) > half.offset; });
-    });
-}
 
 /// Whether a place in the plane of a piece lies in its outline or at most `margin` outside of it.
 bool reaches(const Piece& piece, const Imath::V2f& place, double margin) {
@@ -92,7 +74,7 @@ std::vector<Footprint> footprints(const std::vector<Piece>& pieces, const Polygo
     for (const V3f& v : outlines[p]) box.extendBy(v);
     const float margin = 2 * floor.spacing();
     std::vector<std::uint32_t> near;
-    bvh.polygons_in(half_spaces_around(box, margin), near);
+    bvh.polygons_in(Shaft::around(box, margin).half_spaces(), near);
     std::sort(near.begin(), near.end());
 
     std::vector<Footprint> found;
@@ -232,7 +214,7 @@ void snap_edges(std::vector<Piece>& pieces) {
             Imath::Box3f box;
             box.extendBy(V3f(ends[0]));
             box.extendBy(V3f(ends[1]));
-            bvh.polygons_in(half_spaces_around(box, 1.5F * piece.patch.spacing()), near);
+            bvh.polygons_in(Shaft::around(box, 1.5F * piece.patch.spacing()).half_spaces(), near);
             double best = 1.2 * own;
             for (const std::uint32_t other : near) {
                 if (other == p || !pieces[other].patch.flat) continue;
@@ -261,11 +243,11 @@ void snap_edges(std::vector<Piece>& pieces) {
             Imath::Box3f inner;
             inner.extendBy(V3f(ends[0] * 0.7 + ends[1] * 0.3));
             inner.extendBy(V3f(ends[0] * 0.3 + ends[1] * 0.7));
-            const std::array<HalfSpace, 6> along = half_spaces_around(inner, 1.5F * piece.patch.spacing());
+            const Shaft along = Shaft::around(inner, 1.5F * piece.patch.spacing());
             near.clear();
-            bvh.polygons_in(along, near);
+            bvh.polygons_in(along.half_spaces(), near);
             if (std::any_of(near.begin(), near.end(),
-                            [&](std::uint32_t other) { return other != p && may_reach(outlines[other], along); }))
+                            [&](std::uint32_t other) { return other != p && along.may_hold(outlines[other]); }))
                 loose[p] = 1;
         }
         std::vector<V2d> outline = outline_of(edges);

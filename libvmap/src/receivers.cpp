@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "receivers.h"
 
+#include "shaft.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -35,15 +37,8 @@ bool stands_on(const Surface& surface, std::uint32_t patch_index, const V2f& low
         box.extendBy(patch.from_plane(q));
         box.extendBy(patch.from_plane(q) + patch.normal * reach);
     }
-    std::array<HalfSpace, 6> around{};
-    for (int axis = 0; axis < 3; ++axis) {
-        V3f unit(0);
-        unit[axis] = 1;
-        around.at(2 * static_cast<std::size_t>(axis)) = {unit, box.max[axis] + touch};
-        around.at(2 * static_cast<std::size_t>(axis) + 1) = {-unit, touch - box.min[axis]};
-    }
     std::vector<std::uint32_t> found;
-    surface.bvh.polygons_in(around, found);
+    surface.bvh.polygons_in(Shaft::around(box, touch).half_spaces(), found);
     return std::any_of(found.begin(), found.end(), [&](std::uint32_t other) {
         if (other == patch_index) return false;
         float lowest = std::numeric_limits<float>::max();

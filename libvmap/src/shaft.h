@@ -20,6 +20,12 @@ public:
     /// Convex hull of the two boxes, as half-spaces.
     Shaft(const Imath::Box3f& a, const Imath::Box3f& b);
 
+    /// All that lies within `margin` of a box.
+    [[nodiscard]] static Shaft around(const Imath::Box3f& box, float margin) {
+        const Imath::Box3f grown(box.min - Imath::V3f(margin), box.max + Imath::V3f(margin));
+        return {grown, grown};
+    }
+
     [[nodiscard]] std::span<const HalfSpace> half_spaces() const { return {half_spaces_.data(), count_}; }
 
     /// Whether a convex polygon may reach in: false only if it lies wholly outside one of the half-spaces.

@@ -73,6 +73,14 @@ PairStatus status_one_by_one(const VmapQuery& query, std::span<const std::uint32
     return seen == xs.size() * ys.size() ? PairStatus::visible : PairStatus::partial;
 }
 
+/// Points around one of the cloud's, at least one.
+std::vector<std::uint32_t> random_group(const PointCloud& cloud, const VmapQuery& query, std::mt19937& random) {
+    const V3d place = cloud.origin + V3d(cloud.positions[random() % cloud.size()]);
+    auto points = query.points_around(place, 0.02 * static_cast<double>(random() % 10));
+    if (points.empty()) points.push_back(query.nearest_point(place));
+    return points;
+}
+
 TEST(VmapQuery, PointsSeeEachOtherWhenTheirLeavesDo) {
     for (test::NamedCloud& scene : test::all_clouds(700)) {
         SCOPED_TRACE(scene.name);
@@ -91,14 +99,8 @@ TEST(VmapQuery, StatusOfGroupsIsThatOfTheirPairs) {
         SCOPED_TRACE(scene.name);
         const Questioned q(std::move(scene.cloud));
         for (int i = 0; i < 200; ++i) {
-            const auto group = [&] {
-                const V3d place = q.cloud.origin + V3d(q.cloud.positions[random() % q.cloud.size()]);
-                auto points = q.query.points_around(place, 0.02 * static_cast<double>(random() % 10));
-                if (points.empty()) points.push_back(q.query.nearest_point(place));
-                return points;
-            };
-            const auto xs = group();
-            const auto ys = group();
+            const auto xs = random_group(q.cloud, q.query, random);
+            const auto ys = random_group(q.cloud, q.query, random);
             ASSERT_EQ(q.query.status(xs, ys), status_one_by_one(q.query, xs, ys));
         }
     }
@@ -248,14 +250,8 @@ TEST(PatchQuery, StatusOfGroupsHoldsForAllTheirPairs) {
         SCOPED_TRACE(scene.name);
         const QuestionedPatches q(std::move(scene.cloud), 150);
         for (int i = 0; i < 200; ++i) {
-            const auto group = [&] {
-                const V3d place = q.cloud.origin + V3d(q.cloud.positions[random() % q.cloud.size()]);
-                auto points = q.query.points_around(place, 0.02 * static_cast<double>(random() % 10));
-                if (points.empty()) points.push_back(q.query.nearest_point(place));
-                return points;
-            };
-            const auto xs = group();
-            const auto ys = group();
+            const auto xs = random_group(q.cloud, q.query, random);
+            const auto ys = random_group(q.cloud, q.query, random);
             const PairStatus status = q.query.status(xs, ys);
             if (status == PairStatus::partial) continue;
             ASSERT_EQ(status, status_one_by_one(q.query, xs, ys));
