@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "indirect_light.h"
 
+#include "channel_mean.h"
 #include "curved_light.h"
 #include "gather_directions.h"
 #include "gmres.h"
@@ -31,9 +32,6 @@ constexpr float buried_below = 3;
 
 C3f product(const C3f& a, const C3f& b) {
     return {a.x * b.x, a.y * b.y, a.z * b.z};
-}
-float mean_of(const C3f& c) {
-    return (c.x + c.y + c.z) / 3;
 }
 
 /// How finely light is gathered for a tolerance.

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "channel_mean.h"
 #include "direct_light.h"
 #include "indirect_light.h"
 #include "surface.h"
@@ -45,7 +46,7 @@ void check(const PointCloud& cloud, std::span<const LightSource> lights, const L
 bool shall_gather(const Surface& surface, std::span<const Emitter> emitters) {
     if (emitters.size() <= few_emitters) return false;
     const PointCloud& cloud = surface.cloud;
-    const auto mean = [](const C3f& c) { return static_cast<double>(c.x + c.y + c.z) / 3; };
+    const auto mean = [](const C3f& c) { return static_cast<double>(mean_of(c)); };
     double emitted = 0;
     double absorbed = 0;
     for (std::size_t i = 0; i < cloud.size(); ++i) {

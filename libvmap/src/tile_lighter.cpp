@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tile_lighter.h"
 
+#include "channel_mean.h"
 #include "sampling.h"
 #include "shaft.h"
 
@@ -36,10 +37,6 @@ float distance_to(const Box3f& box, const V3f& place) {
     for (int axis = 0; axis < 3; ++axis)
         away[axis] = std::max({box.min[axis] - place[axis], 0.0F, place[axis] - box.max[axis]});
     return away.length();
-}
-
-float mean_of(const C3f& c) {
-    return (c.x + c.y + c.z) / 3;
 }
 
 }  // namespace
